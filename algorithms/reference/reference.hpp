@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/scene.hpp"
+
+/// Ground truth on the CPU: one tracer (Embree, TBB) that grows with the papers. It shades as the forward pass does and
+/// integrates the medium in float64.
+namespace pellucid {
+
+/// Surfaces as seen at each pixel centre, rows from the top: radiance, and the distance from the eye along the pixel's
+/// ray [m], infinite where nothing is hit.
+struct SurfaceLayer {
+  Image radiance;                 ///< RGB
+  std::vector<double> distance_m; ///< one per pixel
+};
+
+/// Traces the opaque surfaces and the environment behind them with Embree.
+SurfaceLayer trace_surfaces(const Scene&, const Camera&);
+
+struct ReferenceOptions {
+  /// Per pixel the number of steps is doubled until the result changes by less than this, or until max_steps.
+  double tolerance = 1e-4;
+  int min_steps = 64;
+  int max_steps = 8192;
+  std::function<void(double)> progress;  ///< share done, from any thread
+};
+
+struct Reference {
+  Image image;           ///< RGBA; alpha is the medium's transmittance
+  Image mask;            ///< one channel: 1 where the pixel's ray meets the volume before a surface
+  double step_error_max = 0;   ///< largest |radiance(n) − radiance(n/2)| of any pixel and channel at its last doubling
+  double step_error_mean = 0;
+  double unconverged_share = 0;  ///< pixels that reached max_steps above the tolerance
+};
+
+/// Integrates dL/dt = σ(t)·C(t)·T(t) from the near plane to `surfaces` and adds T times their radiance. Taking the
+/// surfaces from the shared raster pass instead of trace_surfaces() makes silhouettes identical, so that an error metric
+/// sees the medium alone; both are offered (`--surfaces rays|raster`).
+Reference render_reference(const Scene&, const Camera&, const SurfaceLayer& surfaces, const ReferenceOptions& = {});
+
+}  // namespace pellucid

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "algorithms/reference/reference.hpp"
+#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/scene.hpp"
+#include "algorithms/technique.hpp"
+#include "gl/timer.hpp"
+
+namespace pellucid {
+
+/// Settings of the frame itself, common to all techniques; named with the prefix `frame.`.
+enum class FrameFormat { half, single };
+struct FrameSettings {
+  FrameFormat format = FrameFormat::half;
+  static constexpr void parameters(auto& self, auto&& visit) {
+    visit(PARAM(format), {.cite = "Imagire et al. 2007, Sec. 5",
+                          .doc = "bits of a colour channel that passes blend into: 16 (half) or 32 (single)",
+                          .when = Change::precompute,
+                          .choices = "half|single"});
+  }
+};
+static_assert(well_formed<FrameSettings>());
+
+/// A scene, a technique and a target of one size: what the command line, the sweep worker and the viewer render with.
+/// Needs a current GL context.
+class RenderSession {
+ public:
+  RenderSession(Scene scene, std::string_view technique, std::string_view view, int width, int height);
+  ~RenderSession();
+  RenderSession(RenderSession&&) noexcept;
+  RenderSession& operator=(RenderSession&&) noexcept;
+
+  /// `name` is a technique's parameter, `scene.…` or `frame.…`. Throws InputError.
+  Change assign(std::string_view name, const Value&);
+  Change assign_text(std::string_view name, std::string_view text);
+  /// Every parameter with its current value, under the names that assign() takes.
+  nlohmann::json parameters() const;
+  void set_view(const View&);
+  void resize(int width, int height);
+
+  /// Brings prepare() up to date; returns its time in seconds (0 when nothing was to do).
+  double prepare();
+  /// Draws one frame (and prepares if need be).
+  void render(gl::PassTimer&);
+  Image read_color() const;  ///< RGBA, rows from the top
+  /// The surfaces of the shared forward pass, at float precision, for the reference.
+  SurfaceLayer raster_surfaces();
+
+  Scene& scene();
+  const Camera& camera() const;
+  Technique& technique();
+  const TechniqueInfo& technique_info() const;
+  const gl::Texture& color() const;
+  std::string reload_shaders();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pellucid

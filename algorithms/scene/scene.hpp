@@ -1,0 +1,148 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/parameters.hpp"
+#include "algorithms/scene/image.hpp"
+
+/// A scene is plain data, in metres and scene-linear Rec. 709 radiance, right-handed, y up. It knows no GL.
+namespace pellucid {
+
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  ///< unit, one per position
+  std::vector<glm::vec3> colors;   ///< empty, or one per position; multiplies the albedo
+  std::vector<glm::vec2> uvs;      ///< empty, or one per position
+  std::vector<glm::uvec3> triangles;
+};
+
+/// Lambertian: radiance = albedo · (ambient + Σ E cos θ / π), the normal turned towards the viewer (two-sided).
+struct Material {
+  std::string name;
+  glm::vec3 albedo{0.5F};
+  glm::vec3 emission{0.0F};  ///< radiance
+};
+
+/// One placed mesh.
+struct Instance {
+  std::string name;
+  int mesh = 0;
+  int material = 0;
+  glm::mat4 to_world{1.0F};
+  glm::vec3 tint{1.0F};  ///< multiplies the albedo
+};
+
+enum class LightKind { directional, point, spot };
+
+/// `intensity`: irradiance at normal incidence for directional lights [W/m²], radiant intensity for the others [W/sr].
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::directional;
+  glm::vec3 position{0.0F};
+  glm::vec3 direction{0.0F, -1.0F, 0.0F};  ///< unit, the way the light travels
+  glm::vec3 intensity{1.0F};
+  float inner_angle_deg = 20.0F;  ///< half-angle of the full cone of a spot
+  float outer_angle_deg = 30.0F;  ///< half-angle at which a spot reaches zero (smoothstep of the cosine between)
+};
+inline constexpr int kMaxLights = 4;
+
+/// A box of voxels. `to_world` maps local coordinates [0,1]³ to the world, so its columns are the box's edges.
+/// Voxel centres lie at (i + 1/2)/n; density is interpolated trilinearly and clamped at the border.
+struct Volume {
+  std::string name;
+  glm::ivec3 size{1};
+  std::vector<float> density;  ///< x fastest; ≥ 0, finite
+  glm::mat4 to_world{1.0F};
+  float extinction = 1.0F;                ///< φ [1/m] at density 1
+  glm::vec3 albedo{1.0F};                 ///< single-scattering albedo
+  glm::vec3 emission{0.0F};               ///< radiance added to the scattered one
+
+  glm::vec3 voxel_spacing_m() const;  ///< edge length of a voxel along each axis, in the world
+};
+
+/// Radiance from everywhere: a lat-long image (row 0 at +y, u = 1/2 at −z) times `scale`, or a vertical gradient.
+struct Environment {
+  std::optional<Image> image;
+  float scale = 1.0F;
+  glm::vec3 zenith{0.0F}, horizon{0.0F}, ground{0.0F};  ///< without an image
+  /// `direction` unit.
+  glm::vec3 radiance(const glm::vec3& direction) const;
+};
+
+/// A named pinhole view.
+struct View {
+  std::string name;
+  glm::vec3 eye{0.0F, 0.0F, 5.0F};
+  glm::vec3 target{0.0F};
+  glm::vec3 up{0.0F, 1.0F, 0.0F};
+  float fov_y_deg = 45.0F;
+  float near_m = 0.1F;
+  float far_m = 1000.0F;
+};
+
+/// A view with its image size: what a technique renders and the reference traces. Pixel centres at +1/2.
+struct Camera {
+  View view;
+  int width = 720;
+  int height = 540;
+  glm::mat4 world_to_view() const;
+  glm::mat4 projection() const;  ///< OpenGL clip space
+  /// Unit world direction through the image point (x, y) in pixels from the top left corner.
+  glm::dvec3 ray_direction(double x, double y) const;
+};
+
+class SceneSource;
+
+/// A scene file, loaded. `parameters()` exposes the scene's own parameters (without the prefix `scene.`); assigning one
+/// changes the data below in place and raises `revision`.
+class Scene {
+ public:
+  std::string name;
+  std::string title;
+  std::string description;
+  std::string stand_in;  ///< which mesh or data stands in for the paper's own; empty when none does
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+  std::optional<Volume> volume;
+  Environment environment;
+  glm::vec3 ambient{0.0F};  ///< radiance of the uniform ambient light on surfaces and in the medium
+  std::vector<View> views;  ///< at least one; the first is the default
+
+  const View& find_view(std::string_view name) const;  ///< empty: the first; InputError with the nearest name
+  ParameterRef parameters();
+  std::uint64_t revision() const;
+  /// SHA-256 (hex) of the source text, the files it reads and the current parameter values.
+  std::string content_hash() const;
+
+  Scene();
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  std::shared_ptr<SceneSource> source;  ///< what parameters and paths re-evaluate; made by the loader
+};
+
+struct SceneInfo {
+  std::string name, title, description, module;  ///< module: the folder it lies in
+};
+
+/// Scenes that are embedded in the binary (`algorithms/*/scenes/*.toml`), read cheaply: for `pellucid list`.
+std::vector<SceneInfo> list_scenes();
+
+/// `name_or_path`: a listed name, or a path ending in .toml. Every error is an InputError "file.toml:line:column: …".
+Scene load_scene(const std::string& name_or_path);
+
+}  // namespace pellucid

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "algorithms/parameters.hpp"
+#include "algorithms/scene/scene.hpp"
+#include "gl/objects.hpp"
+#include "gl/timer.hpp"
+
+namespace pellucid {
+
+class ForwardPass;
+
+/// What a technique draws into: scene-linear RGBA and depth, of one size. Alpha is the transmittance to the background
+/// of what was blended over it.
+struct Target {
+  const gl::Texture& color;
+  const gl::Texture& depth;
+  const gl::Framebuffer& framebuffer;
+};
+
+/// A rendering technique. A context must be current for every call but parameters().
+class Technique {
+ public:
+  virtual ~Technique() = default;
+  virtual ParameterRef parameters() = 0;
+  /// Precomputation, timed and reported apart. Called once before the first frame, and again when the scene's revision
+  /// or a Change::precompute parameter changed. Throws InputError when the scene lacks what the technique needs.
+  virtual void prepare(const Scene&) = 0;
+  /// Draws one frame over what it clears itself; opaque objects come from `forward`. Passes are timed by name.
+  virtual void render(const Scene&, const Camera&, ForwardPass& forward, const Target&, gl::PassTimer&) = 0;
+  /// Errors that the technique can tell of itself (miss rate, exit distance); empty when there are none.
+  virtual void native_errors(nlohmann::json&) const {}
+  /// Recompiles its shaders from the current sources; returns the compiler's words, empty when all is well.
+  virtual std::string reload_shaders() = 0;
+};
+
+struct TechniqueInfo {
+  std::string_view name;       ///< snake_case
+  std::string_view title;
+  std::string_view reference;  ///< key in references.bib
+  bool baseline = false;
+  std::string_view doc;        ///< one line
+  const ParameterTable& (*table)() = nullptr;
+  std::unique_ptr<Technique> (*make)() = nullptr;
+};
+
+/// Every technique, in registry.cpp's order.
+std::span<const TechniqueInfo> techniques();
+/// Throws InputError with the nearest name.
+const TechniqueInfo& find_technique(std::string_view name);
+
+}  // namespace pellucid
