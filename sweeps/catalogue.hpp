@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/parameters.hpp"
+
+namespace pellucid::sweeps {
+
+/// What the planner needs to know of a scene; no mesh, no volume.
+struct SceneFacts {
+  std::string content_hash;  ///< at the scene's default parameters
+  std::vector<std::string> views;
+  std::vector<ParameterInfo> parameters;  ///< without the prefix `scene.`
+};
+
+/// What a spec may name. The installed one asks the registry and the scene loader; tests bring their own.
+class Catalogue {
+ public:
+  virtual ~Catalogue() = default;
+  virtual std::vector<std::string> techniques() const = 0;
+  /// Throws InputError with the nearest name, as do the next two.
+  virtual std::vector<ParameterInfo> technique_parameters(std::string_view technique) const = 0;
+  /// SHA-256 (hex) of every shader source that the technique may compile.
+  virtual std::string shader_hash(std::string_view technique) const = 0;
+  /// `scene`: a listed name or a path ending in .toml.
+  virtual const SceneFacts& scene(const std::string& scene) const = 0;
+};
+
+/// The techniques and scenes of this program; scenes are loaded once each, on first use.
+const Catalogue& installed_catalogue();
+
+}  // namespace pellucid::sweeps
