@@ -1,30 +1,37 @@
 #include "algorithms/parameters.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
 namespace pellucid {
 
 const char* name(Change change) {
   switch (change) {
-    case Change::uniform: return "uniform";
-    case Change::program: return "program";
-    case Change::precompute: return "precompute";
+    case Change::uniform:
+      return "uniform";
+    case Change::program:
+      return "program";
+    case Change::precompute:
+      return "precompute";
   }
   return "";
 }
 
 const char* name(ValueType type) {
   switch (type) {
-    case ValueType::boolean: return "boolean";
-    case ValueType::integer: return "integer";
-    case ValueType::real: return "real";
-    case ValueType::choice: return "choice";
+    case ValueType::boolean:
+      return "boolean";
+    case ValueType::integer:
+      return "integer";
+    case ValueType::real:
+      return "real";
+    case ValueType::choice:
+      return "choice";
   }
   return "";
 }
@@ -48,10 +55,14 @@ namespace {
 
 std::string allowed(const ParameterInfo& info) {
   switch (info.type) {
-    case ValueType::boolean: return "true or false";
-    case ValueType::integer: return fmt::format("an integer in [{}, {}]", info.min, info.max);
-    case ValueType::real: return fmt::format("a number in [{}, {}]", info.min, info.max);
-    case ValueType::choice: return fmt::format("one of {}", fmt::join(info.choices, ", "));
+    case ValueType::boolean:
+      return "true or false";
+    case ValueType::integer:
+      return fmt::format("an integer in [{}, {}]", info.min, info.max);
+    case ValueType::real:
+      return fmt::format("a number in [{}, {}]", info.min, info.max);
+    case ValueType::choice:
+      return fmt::format("one of {}", fmt::join(info.choices, ", "));
   }
   return "";
 }
@@ -79,8 +90,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 Value checked(const ParameterInfo& info, const Value& value, std::string_view owner) {
   auto in_range = [&](double v) {
     if (!(v >= info.min && v <= info.max)) {
-      throw InputError(fmt::format("{}: {} = {} is out of range [{}, {}]", owner, info.name, to_text(value), info.min,
-                                   info.max));
+      throw InputError(
+          fmt::format("{}: {} = {} is out of range [{}, {}]", owner, info.name, to_text(value), info.min, info.max));
     }
   };
   switch (info.type) {
@@ -132,7 +143,8 @@ Value parse_value(const ParameterInfo& info, std::string_view text, std::string_
       if (ec == std::errc{} && p == end) return checked(info, v, owner);
       break;
     }
-    case ValueType::choice: return checked(info, std::string(text), owner);
+    case ValueType::choice:
+      return checked(info, std::string(text), owner);
   }
   throw wrong_type(info, fmt::format("'{}'", text), owner);
 }
@@ -152,11 +164,12 @@ std::string nearest_name(std::string_view wanted, std::span<const std::string> c
 
 InputError unknown_parameter(std::string_view wanted, std::string_view owner, std::span<const ParameterInfo> infos) {
   std::vector<std::string> names;
-  for (const ParameterInfo& info : infos) names.push_back(info.name);
+  for (const ParameterInfo& info : infos)
+    names.push_back(info.name);
   const std::string near = nearest_name(wanted, names);
-  return InputError(fmt::format("unknown parameter '{}' of {}; {}", wanted, owner,
-                                near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
-                                             : fmt::format("did you mean '{}'?", near)));
+  return InputError(fmt::format(
+      "unknown parameter '{}' of {}; {}", wanted, owner,
+      near.empty() ? fmt::format("it has {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near)));
 }
 
 namespace detail {
@@ -184,10 +197,14 @@ ParameterInfo make_info(std::string_view parameter, ValueType type, const Meta& 
 
 Value make_value(const ParameterInfo& info, double number) {
   switch (info.type) {
-    case ValueType::boolean: return number != 0;
-    case ValueType::integer: return static_cast<std::int64_t>(number);
-    case ValueType::real: return number;
-    case ValueType::choice: return info.choices.at(static_cast<std::size_t>(number));
+    case ValueType::boolean:
+      return number != 0;
+    case ValueType::integer:
+      return static_cast<std::int64_t>(number);
+    case ValueType::real:
+      return number;
+    case ValueType::choice:
+      return info.choices.at(static_cast<std::size_t>(number));
   }
   return {};
 }

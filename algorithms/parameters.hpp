@@ -90,7 +90,8 @@ Value parse_value(const ParameterInfo&, std::string_view text, std::string_view 
 
 /// "unknown parameter 'hull' of sampling_hulls; did you mean 'hulls'?" (or the list of names when none is near).
 InputError unknown_parameter(std::string_view name, std::string_view owner, std::span<const ParameterInfo>);
-/// The candidate with the smallest edit distance, or empty when none is within a third of the name's length (at least 2).
+/// The candidate with the smallest edit distance, or empty when none is within a third of the name's length (at least
+/// 2).
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 // ---- declaring ----
@@ -116,7 +117,8 @@ constexpr std::size_t member_count() {
 
 constexpr std::size_t choice_count(std::string_view choices) {
   std::size_t n = choices.empty() ? 0 : 1;
-  for (char c : choices) n += c == '|' ? 1 : 0;
+  for (char c : choices)
+    n += c == '|' ? 1 : 0;
   return n;
 }
 
@@ -131,10 +133,14 @@ double to_number(const ParameterInfo&, const Value&);
 
 template <class M>
 constexpr ValueType value_type() {
-  if constexpr (std::is_same_v<M, bool>) return ValueType::boolean;
-  else if constexpr (std::is_enum_v<M>) return ValueType::choice;
-  else if constexpr (std::is_integral_v<M>) return ValueType::integer;
-  else return ValueType::real;
+  if constexpr (std::is_same_v<M, bool>)
+    return ValueType::boolean;
+  else if constexpr (std::is_enum_v<M>)
+    return ValueType::choice;
+  else if constexpr (std::is_integral_v<M>)
+    return ValueType::integer;
+  else
+    return ValueType::real;
 }
 
 struct CheckVisitor {

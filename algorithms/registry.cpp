@@ -1,1 +1,39 @@
-// filled by its owner
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "algorithms/sampling_hulls/sampling_hulls.hpp"
+#include "algorithms/technique.hpp"
+#include "algorithms/volume_slices/volume_slices.hpp"
+
+namespace pellucid {
+
+// One line for each paper or baseline; the other is in CMakeLists.txt.
+static const std::array kTechniques{
+    TechniqueInfo{"sampling_hulls", "Sampling hulls", "imagire2007", false,
+                  "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
+                  sampling_hulls::table, sampling_hulls::make},
+    TechniqueInfo{"volume_slices", "Image-aligned slices", "cullip1994", true,
+                  "the slice-based baseline: one plane a step, blended back to front", volume_slices::table,
+                  volume_slices::make},
+};
+
+std::span<const TechniqueInfo> techniques() {
+  return kTechniques;
+}
+
+const TechniqueInfo& find_technique(std::string_view name) {
+  std::vector<std::string> names;
+  for (const TechniqueInfo& info : kTechniques) {
+    if (info.name == name) return info;
+    names.emplace_back(info.name);
+  }
+  const std::string near = nearest_name(name, names);
+  throw InputError(fmt::format(
+      "unknown technique '{}'; {}", name,
+      near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near)));
+}
+
+}  // namespace pellucid

@@ -2,10 +2,11 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/scene.hpp"
@@ -41,11 +42,11 @@ class Technique {
 };
 
 struct TechniqueInfo {
-  std::string_view name;       ///< snake_case
+  std::string_view name;  ///< snake_case
   std::string_view title;
   std::string_view reference;  ///< key in references.bib
   bool baseline = false;
-  std::string_view doc;        ///< one line
+  std::string_view doc;  ///< one line
   const ParameterTable& (*table)() = nullptr;
   std::unique_ptr<Technique> (*make)() = nullptr;
 };

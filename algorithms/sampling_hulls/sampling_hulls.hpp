@@ -22,13 +22,15 @@ struct Parameters {
                            .cite = "Eq. 1, 2",
                            .doc = "sampling points on the valid path of each hull",
                            .when = Change::program});
-    visit(PARAM(sample_offset), {.range = {0, 1},
-                                 .cite = "Eq. 1; beyond the paper where not 0",
-                                 .doc = "place of a point in its step: 0 at the back as in the paper, 0.5 in the middle"});
-    visit(PARAM(coordinates), {.cite = "Sec. 4",
-                               .doc = "format of the local-coordinates map; automatic is 8 bits below 256 voxels, else float",
-                               .when = Change::precompute,
-                               .choices = "automatic|unorm8|single"});
+    visit(PARAM(sample_offset),
+          {.range = {0, 1},
+           .cite = "Eq. 1; beyond the paper where not 0",
+           .doc = "place of a point in its step: 0 at the back as in the paper, 0.5 in the middle"});
+    visit(PARAM(coordinates),
+          {.cite = "Sec. 4",
+           .doc = "format of the local-coordinates map; automatic is 8 bits below 256 voxels, else float",
+           .when = Change::precompute,
+           .choices = "automatic|unorm8|single"});
   }
 };
 static_assert(well_formed<Parameters>());

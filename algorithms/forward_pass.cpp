@@ -1,0 +1,207 @@
+#include "algorithms/forward_pass.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace pellucid {
+namespace {
+
+struct Vertex {
+  glm::vec3 position, normal, color;
+};
+
+struct InstanceAttributes {
+  glm::mat4 to_world;
+  glm::vec3 normal_to_world[3];
+  glm::vec3 albedo, emission;
+};
+
+// lighting.glsl's std140 block.
+struct LightBlock {
+  struct Entry {
+    glm::vec4 position_kind, direction_outer, intensity_inner;
+  } lights[kMaxLights];
+  glm::vec4 ambient_count;
+};
+
+}  // namespace
+
+ForwardPass::ForwardPass(const Scene& scene)
+    : lights_("lights", sizeof(LightBlock), GL_DYNAMIC_DRAW),
+      opaque_("opaque", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/shaders/common/opaque.frag.glsl"}),
+      fullscreen_("fullscreen") {
+  upload_meshes(scene);
+  upload_instances(scene);
+  upload_lights(scene);
+  upload_environment(scene);
+  revision_ = scene.revision();
+}
+
+void ForwardPass::update(const Scene& scene) {
+  if (scene.revision() == revision_) return;
+  revision_ = scene.revision();
+  if (scene.meshes.size() != batches_.size()) upload_meshes(scene);
+  upload_instances(scene);
+  upload_lights(scene);
+  upload_environment(scene);
+}
+
+void ForwardPass::upload_meshes(const Scene& scene) {
+  batches_.clear();
+  batches_.resize(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    std::vector<Vertex> vertices(mesh.positions.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      vertices[i] = {mesh.positions[i], mesh.normals[i], mesh.colors.empty() ? glm::vec3(1.0F) : mesh.colors[i]};
+    }
+    Batch& batch = batches_[m];
+    batch.vertices = gl::Buffer(mesh.name + " vertices", std::span<const Vertex>(vertices));
+    batch.indices = gl::Buffer(mesh.name + " indices", std::span<const glm::uvec3>(mesh.triangles));
+    batch.index_count = static_cast<int>(mesh.triangles.size() * 3);
+  }
+}
+
+void ForwardPass::upload_instances(const Scene& scene) {
+  std::vector<std::vector<InstanceAttributes>> by_mesh(scene.meshes.size());
+  for (const Instance& instance : scene.instances) {
+    const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+    const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(instance.to_world)));
+    by_mesh[static_cast<std::size_t>(instance.mesh)].push_back(
+        {instance.to_world,
+         {normal_to_world[0], normal_to_world[1], normal_to_world[2]},
+         material.albedo * instance.tint,
+         material.emission});
+  }
+  for (std::size_t m = 0; m < batches_.size(); ++m) {
+    Batch& batch = batches_[m];
+    batch.instance_count = static_cast<int>(by_mesh[m].size());
+    if (by_mesh[m].empty()) continue;
+    const std::string& name = scene.meshes[m].name;
+    batch.instances = gl::Buffer(name + " instances", std::span<const InstanceAttributes>(by_mesh[m]));
+    batch.array = gl::VertexArray(
+        name, batch.vertices, sizeof(Vertex),
+        {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 3, offsetof(Vertex, color)}},
+        &batch.indices);
+    const std::size_t normals = offsetof(InstanceAttributes, normal_to_world);
+    batch.array.add_instanced(batch.instances, sizeof(InstanceAttributes),
+                              {{3, 4, 0},
+                               {4, 4, sizeof(glm::vec4)},
+                               {5, 4, 2 * sizeof(glm::vec4)},
+                               {6, 4, 3 * sizeof(glm::vec4)},
+                               {7, 3, normals},
+                               {8, 3, normals + sizeof(glm::vec3)},
+                               {9, 3, normals + 2 * sizeof(glm::vec3)},
+                               {10, 3, offsetof(InstanceAttributes, albedo)},
+                               {11, 3, offsetof(InstanceAttributes, emission)}});
+  }
+}
+
+void ForwardPass::upload_lights(const Scene& scene) {
+  LightBlock block{};
+  uniform_lighting_ = true;
+  auto cosine = [](float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); };
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    block.lights[i] = {glm::vec4(light.position, static_cast<float>(light.kind)),
+                       glm::vec4(light.direction, cosine(light.outer_angle_deg)),
+                       glm::vec4(light.intensity, cosine(light.inner_angle_deg))};
+    uniform_lighting_ = uniform_lighting_ && light.kind == LightKind::directional;
+  }
+  block.ambient_count = glm::vec4(scene.ambient, static_cast<float>(scene.lights.size()));
+  lights_.upload(std::span<const LightBlock>(&block, 1));
+}
+
+void ForwardPass::upload_environment(const Scene& scene) {
+  const Environment& environment = scene.environment;
+  gradient_ = environment;
+  gradient_.image.reset();
+  if (environment.image && !environment_) {
+    const Image& image = *environment.image;
+    // GL's rows start at the bottom, the image's at the top.
+    std::vector<float> texels(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4, 1.0F);
+    float* out = texels.data();
+    for (int y = image.height - 1; y >= 0; --y) {
+      for (int x = 0; x < image.width; ++x, out += 4) {
+        const float* in = image.at(x, y);
+        for (int c = 0; c < 3; ++c)
+          out[c] = in[image.channels >= 3 ? c : 0];
+      }
+    }
+    environment_ = gl::Texture::make_2d("environment", gl::Format::rgba32f, image.width, image.height);
+    environment_.upload(texels);
+    environment_.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
+  }
+  gl::Defines defines;
+  if (environment_) defines.emplace_back("ENVIRONMENT_IMAGE", "1");
+  if (!background_) {
+    background_ = gl::Program(
+        "background",
+        {"algorithms/shaders/common/fullscreen.vert.glsl", "algorithms/shaders/common/background.frag.glsl"}, defines);
+  }
+}
+
+void ForwardPass::draw_batches() const {
+  for (const Batch& batch : batches_) {
+    if (batch.instance_count == 0) continue;
+    batch.array.bind();
+    glDrawElementsInstanced(GL_TRIANGLES, batch.index_count, GL_UNSIGNED_INT, nullptr, batch.instance_count);
+  }
+}
+
+void ForwardPass::bind_lights() const {
+  lights_.bind_uniform(0);
+}
+
+void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  const glm::mat4 world_to_clip = camera.projection() * camera.world_to_view();
+
+  if (!keep_depth) {
+    glDepthMask(GL_TRUE);
+    const float far_depth = 1.0F;
+    glClearBufferfv(GL_DEPTH, 0, &far_depth);
+  }
+  glDepthMask(keep_depth ? GL_FALSE : GL_TRUE);
+  // The background is drawn where the depth is still that of the far plane: behind everything when depth is kept, first
+  // of all otherwise.
+  glDepthFunc(GL_LEQUAL);
+  background_.use();
+  background_.set("clip_to_world", glm::inverse(world_to_clip));
+  background_.set("eye", camera.view.eye);
+  background_.set("radiance_scale", gradient_.scale);
+  background_.set("zenith", gradient_.zenith);
+  background_.set("horizon", gradient_.horizon);
+  background_.set("ground", gradient_.ground);
+  if (environment_) environment_.bind(0);
+  fullscreen_.bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+
+  bind_lights();
+  opaque_.use();
+  opaque_.set("world_to_clip", world_to_clip);
+  opaque_.set("eye", camera.view.eye);
+  draw_batches();
+  glDepthMask(GL_TRUE);
+}
+
+void ForwardPass::draw_geometry(const Camera& camera, const gl::Program& program) const {
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  const float far_depth = 1.0F;
+  glClearBufferfv(GL_DEPTH, 0, &far_depth);
+  program.use();
+  program.set("world_to_clip", camera.projection() * camera.world_to_view());
+  draw_batches();
+}
+
+std::string ForwardPass::reload_shaders() {
+  return opaque_.reload() + background_.reload();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "algorithms/scene/scene.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+
+namespace pellucid {
+
+/// The opaque objects, the lights and the environment behind everything: what all techniques share, drawn one way.
+class ForwardPass {
+ public:
+  explicit ForwardPass(const Scene&);
+
+  /// Takes over what changed since the last call (transforms, materials, lights, environment).
+  void update(const Scene&);
+
+  /// Environment and shaded opaque objects into the bound framebuffer. Unless `keep_depth`, depth is cleared and
+  /// written; with it, the depth of an earlier pass over the same geometry is reused and only visible fragments are
+  /// shaded. A second colour attachment, if there is one, receives the distance from the eye [m].
+  void draw_shaded(const Camera&, bool keep_depth) const;
+
+  /// Opaque objects only, with another fragment shader behind `opaque.vert.glsl`; sets its uniform `world_to_clip`,
+  /// clears and writes depth.
+  void draw_geometry(const Camera&, const gl::Program&) const;
+
+  /// Binds the lights' uniform block (binding 0 of lighting.glsl).
+  void bind_lights() const;
+  /// True if no light's irradiance depends on the place.
+  bool uniform_lighting() const { return uniform_lighting_; }
+  std::string reload_shaders();
+
+ private:
+  struct Batch {
+    gl::Buffer vertices, indices, instances;
+    gl::VertexArray array;
+    int index_count = 0;
+    int instance_count = 0;
+  };
+  void upload_meshes(const Scene&);
+  void upload_instances(const Scene&);
+  void upload_lights(const Scene&);
+  void upload_environment(const Scene&);
+  void draw_batches() const;
+
+  std::vector<Batch> batches_;
+  gl::Buffer lights_;
+  gl::Texture environment_;
+  Environment gradient_;
+  bool uniform_lighting_ = true;
+  std::uint64_t revision_ = 0;
+  gl::Program opaque_, background_;
+  gl::VertexArray fullscreen_;
+};
+
+}  // namespace pellucid

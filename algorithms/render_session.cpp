@@ -1,0 +1,193 @@
+#include "algorithms/render_session.hpp"
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "algorithms/forward_pass.hpp"
+#include "gl/context.hpp"
+
+namespace pellucid {
+namespace {
+
+constexpr std::string_view kScenePrefix = "scene.";
+constexpr std::string_view kFramePrefix = "frame.";
+
+nlohmann::json to_json(const Value& value) {
+  return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
+}
+
+// GL's rows start at the bottom, an image's at the top.
+Image flipped(const std::vector<float>& texels, int width, int height, int stride, int channels) {
+  Image image(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    const float* in =
+        texels.data() + static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width * stride);
+    float* out = image.at(0, y);
+    for (int x = 0; x < width; ++x, in += stride, out += channels)
+      std::copy_n(in, channels, out);
+  }
+  return image;
+}
+
+}  // namespace
+
+struct RenderSession::State {
+  Scene scene;
+  const TechniqueInfo* info;
+  std::unique_ptr<Technique> technique;
+  FrameSettings frame;
+  Camera camera;
+  ForwardPass forward;
+  gl::Texture color, depth;
+  gl::Framebuffer framebuffer;
+  bool prepared = false;
+  std::uint64_t prepared_revision = 0;
+
+  State(Scene loaded, std::string_view technique_name)
+      : scene(std::move(loaded)), info(&find_technique(technique_name)), technique(info->make()), forward(scene) {}
+
+  /// The table that `name` belongs to, and `name` without its prefix.
+  std::pair<ParameterRef, std::string> owner(std::string_view& name) {
+    if (name.starts_with(kScenePrefix)) {
+      name.remove_prefix(kScenePrefix.size());
+      return {scene.parameters(), "scene " + scene.name};
+    }
+    if (name.starts_with(kFramePrefix)) {
+      name.remove_prefix(kFramePrefix.size());
+      return {bind_parameters(frame), "frame"};
+    }
+    return {technique->parameters(), std::string(info->name)};
+  }
+
+  void fit_target() {
+    const gl::Format format = frame.format == FrameFormat::half ? gl::Format::rgba16f : gl::Format::rgba32f;
+    if (color && color.width() == camera.width && color.height() == camera.height && color.format() == format) return;
+    color = gl::Texture::make_2d("frame colour", format, camera.width, camera.height);
+    color.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
+    depth = gl::Texture::make_2d("frame depth", gl::Format::depth32f, camera.width, camera.height);
+    framebuffer = gl::Framebuffer("frame", {&color}, &depth);
+  }
+};
+
+RenderSession::RenderSession(Scene scene, std::string_view technique, std::string_view view, int width, int height)
+    : state_(std::make_unique<State>(std::move(scene), technique)) {
+  state_->camera.view = state_->scene.find_view(view);
+  resize(width, height);
+}
+RenderSession::~RenderSession() = default;
+RenderSession::RenderSession(RenderSession&&) noexcept = default;
+RenderSession& RenderSession::operator=(RenderSession&&) noexcept = default;
+
+Change RenderSession::assign(std::string_view name, const Value& value) {
+  const auto [table, owner] = state_->owner(name);
+  const Change change = table.assign(name, value, owner);
+  if (change == Change::precompute) state_->prepared = false;
+  // A view may be animated by the scene's parameters.
+  state_->camera.view = state_->scene.find_view(state_->camera.view.name);
+  return change;
+}
+
+Change RenderSession::assign_text(std::string_view name, std::string_view text) {
+  std::string_view local = name;
+  const auto [table, owner] = state_->owner(local);
+  const ParameterInfo* info = table.table->find(local);
+  if (info == nullptr) throw unknown_parameter(local, owner, table.infos());
+  return assign(name, parse_value(*info, text, owner));
+}
+
+nlohmann::json RenderSession::parameters() const {
+  nlohmann::json all = nlohmann::json::object();
+  auto add = [&](std::string_view prefix, const ParameterRef& table) {
+    for (const ParameterInfo& info : table.infos())
+      all[std::string(prefix) + info.name] = to_json(table.get(info.name));
+  };
+  add("", state_->technique->parameters());
+  add(kScenePrefix, state_->scene.parameters());
+  add(kFramePrefix, bind_parameters(state_->frame));
+  return all;
+}
+
+void RenderSession::set_view(const View& view) {
+  state_->camera.view = view;
+}
+
+void RenderSession::resize(int width, int height) {
+  check_image_size(width, height, "image");
+  const int limit = gl::limits().max_texture_size;
+  if (width > limit || height > limit) {
+    throw InputError("image size " + std::to_string(width) + "x" + std::to_string(height) +
+                     " exceeds this device's limit of " + std::to_string(limit));
+  }
+  state_->camera.width = width;
+  state_->camera.height = height;
+}
+
+double RenderSession::prepare() {
+  State& s = *state_;
+  s.forward.update(s.scene);
+  if (s.prepared && s.prepared_revision == s.scene.revision()) return 0;
+  const auto start = std::chrono::steady_clock::now();
+  s.technique->prepare(s.scene);
+  glFinish();
+  s.prepared = true;
+  s.prepared_revision = s.scene.revision();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void RenderSession::render(gl::PassTimer& timer) {
+  prepare();
+  State& s = *state_;
+  s.fit_target();
+  timer.begin_frame();
+  s.technique->render(s.scene, s.camera, s.forward, Target{s.color, s.depth, s.framebuffer}, timer);
+  timer.end_frame();
+  gl::check("render", s.info->name);
+}
+
+Image RenderSession::read_color() const {
+  const gl::Texture& color = state_->color;
+  return flipped(color.read(), color.width(), color.height(), 4, 4);
+}
+
+SurfaceLayer RenderSession::raster_surfaces() {
+  State& s = *state_;
+  s.forward.update(s.scene);
+  const int width = s.camera.width, height = s.camera.height;
+  const gl::Texture radiance = gl::Texture::make_2d("surface radiance", gl::Format::rgba32f, width, height);
+  const gl::Texture distance = gl::Texture::make_2d("surface distance", gl::Format::r32f, width, height);
+  const gl::Texture depth = gl::Texture::make_2d("surface depth", gl::Format::depth32f, width, height);
+  const gl::Framebuffer framebuffer("surfaces", {&radiance, &distance}, &depth);
+  framebuffer.bind();
+  s.forward.draw_shaded(s.camera, false);
+  gl::check("raster_surfaces", s.info->name);
+  SurfaceLayer layer;
+  layer.radiance = flipped(radiance.read(), width, height, 4, 3);
+  const Image metres = flipped(distance.read(), width, height, 1, 1);
+  layer.distance_m.assign(metres.pixels.begin(), metres.pixels.end());
+  return layer;
+}
+
+Scene& RenderSession::scene() {
+  return state_->scene;
+}
+const Camera& RenderSession::camera() const {
+  return state_->camera;
+}
+Technique& RenderSession::technique() {
+  return *state_->technique;
+}
+const TechniqueInfo& RenderSession::technique_info() const {
+  return *state_->info;
+}
+const gl::Texture& RenderSession::color() const {
+  return state_->color;
+}
+
+std::string RenderSession::reload_shaders() {
+  return state_->forward.reload_shaders() + state_->technique->reload_shaders();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,170 @@
+// Sampling hulls: Imagire, Johan, Tamura, Nishita 2007 (references.bib: imagire2007).
+#include "algorithms/sampling_hulls/sampling_hulls.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "algorithms/box_slicing.hpp"
+#include "algorithms/forward_pass.hpp"
+#include "algorithms/medium.hpp"
+#include "gl/program.hpp"
+
+namespace pellucid::sampling_hulls {
+namespace {
+
+constexpr const char* kName = "sampling_hulls";
+
+class SamplingHulls final : public Technique {
+ public:
+  ParameterRef parameters() override { return bind_parameters(parameters_); }
+
+  void prepare(const Scene& scene) override {
+    medium_.emplace(scene, kName);
+    // Sec. 4: 8 bits suffice for the local-coordinates map of a volume of fewer than 256 voxels along each axis.
+    const glm::ivec3 size = scene.volume->size;
+    const bool small = std::max({size.x, size.y, size.z}) < 256;
+    const bool unorm8 =
+        parameters_.coordinates == Coordinates::unorm8 || (parameters_.coordinates == Coordinates::automatic && small);
+    map_format_ = unorm8 ? gl::Format::rgba8 : gl::Format::rgba32f;
+    map_ = {};
+  }
+
+  void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
+              gl::PassTimer& timer) override {
+    fit_map(target);
+    compile(forward.uniform_lighting());
+    const Volume& volume = *scene.volume;
+    const glm::mat4 world_to_local = glm::inverse(volume.to_world);
+    cut(volume, camera);
+
+    // Step 1: opaque objects into the local-coordinates map.
+    {
+      auto pass = timer.pass("coordinates");
+      map_framebuffer_.bind();
+      coordinates_.set("world_to_local", world_to_local);
+      forward.draw_geometry(camera, coordinates_);
+    }
+    // Step 2: opaque objects into the back buffer, with the depth of step 1.
+    {
+      auto pass = timer.pass("opaque");
+      target.framebuffer.bind();
+      forward.draw_shaded(camera, true);
+    }
+    // Steps 3 to 2 + 2M: for each hull, back to front, its back faces into the map and its front faces into the back
+    // buffer.
+    auto pass = timer.pass("hulls");
+    const glm::mat4 local_to_clip = camera.projection() * camera.world_to_view() * volume.to_world;
+    // All vertices lie at or behind the near plane; clamping keeps rounding from cutting holes into a cap that lies in
+    // it, and the far plane from cutting the volume.
+    glEnable(GL_DEPTH_CLAMP);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_CULL_FACE);
+    glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);  // A × BackBuffer + C
+    back_.set("local_to_clip", local_to_clip);
+    front_.set("local_to_clip", local_to_clip);
+    front_.set("world_to_local", world_to_local);
+    front_.set("eye", camera.view.eye);
+    front_.set("sample_offset", parameters_.sample_offset);
+    medium_->bind(front_, volume);
+    map_.bind(1);
+    forward.bind_lights();
+    for (int hull = 0; hull < geometry_.pieces(); ++hull) {
+      glCullFace(GL_FRONT);
+      glDisable(GL_BLEND);
+      map_framebuffer_.bind();
+      back_.use();
+      geometry_.draw(hull);
+
+      glCullFace(GL_BACK);
+      glEnable(GL_BLEND);
+      target.framebuffer.bind();
+      front_.use();
+      geometry_.draw(hull);
+    }
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_CLAMP);
+    glDepthMask(GL_TRUE);
+  }
+
+  std::string reload_shaders() override {
+    std::string words;
+    for (gl::Program* program : {&coordinates_, &back_, &front_}) {
+      if (*program) words += program->reload();
+    }
+    return words;
+  }
+
+ private:
+  void fit_map(const Target& target) {
+    if (map_ && map_.width() == target.color.width() && map_.height() == target.color.height() &&
+        shared_depth_ == target.depth.id()) {
+      return;
+    }
+    map_ = gl::Texture::make_2d("local-coordinates map", map_format_, target.color.width(), target.color.height());
+    map_.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
+    map_framebuffer_ = gl::Framebuffer("local-coordinates map", {&map_}, &target.depth);
+    shared_depth_ = target.depth.id();
+  }
+
+  void compile(bool uniform_source) {
+    if (!coordinates_) {
+      coordinates_ = gl::Program("hull coordinates", {"algorithms/shaders/common/opaque.vert.glsl",
+                                                      "algorithms/sampling_hulls/coordinates.frag.glsl"});
+      back_ = gl::Program("hull back",
+                          {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/back.frag.glsl"});
+    }
+    if (front_ && compiled_samples_ == parameters_.samples && compiled_uniform_ == uniform_source) return;
+    gl::Defines defines{{"SAMPLES", fmt::to_string(parameters_.samples)}};
+    if (uniform_source) defines.emplace_back("UNIFORM_SOURCE", "1");
+    front_ =
+        gl::Program("hull front",
+                    {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/front.frag.glsl"}, defines);
+    compiled_samples_ = parameters_.samples;
+    compiled_uniform_ = uniform_source;
+  }
+
+  // Cuts the box anew only when view, volume or M changed.
+  void cut(const Volume& volume, const Camera& camera) {
+    const CutKey key{camera.world_to_view(), volume.to_world, camera.view.near_m, parameters_.hulls};
+    if (cut_ == key) return;
+    const BoxDepth depth(volume.to_world, key.world_to_view);
+    const auto range = depth_range(depth, key.near_m);
+    geometry_.upload(range ? cut_hulls(depth, *range, key.hulls) : BoxPieces{});
+    cut_ = key;
+  }
+
+  struct CutKey {
+    glm::mat4 world_to_view, to_world;
+    float near_m;
+    int hulls;
+    bool operator==(const CutKey&) const = default;
+  };
+
+  Parameters parameters_;
+  std::optional<Medium> medium_;
+  gl::Format map_format_ = gl::Format::rgba8;
+  gl::Texture map_;
+  gl::Framebuffer map_framebuffer_;
+  GLuint shared_depth_ = 0;
+  gl::Program coordinates_, back_, front_;
+  int compiled_samples_ = 0;
+  bool compiled_uniform_ = false;
+  BoxGeometry geometry_;
+  std::optional<CutKey> cut_;
+};
+
+}  // namespace
+
+const ParameterTable& table() {
+  return parameter_table<Parameters>();
+}
+std::unique_ptr<Technique> make() {
+  return std::make_unique<SamplingHulls>();
+}
+
+}  // namespace pellucid::sampling_hulls

@@ -1,0 +1,16 @@
+// One slice: the density of its plane stands for its whole slab (Imagire et al. 2007, Sec. 2.1 and Fig. 2).
+#include "algorithms/shaders/common/medium.glsl"
+
+in vec3 local;
+
+uniform vec3 eye;
+uniform vec3 view_axis;   // unit, into the screen
+uniform float slab_m;     // thickness along the viewing axis
+
+layout(location = 0) out vec4 color_and_transmittance;
+
+void main() {
+  vec3 ray = normalize((volume_to_world * vec4(local, 1.0)).xyz - eye);
+  float opacity = step_opacity(medium_extinction(local), slab_m / dot(ray, view_axis));
+  color_and_transmittance = vec4(opacity * medium_source(local), 1.0 - opacity);
+}
