@@ -33,8 +33,8 @@ struct ContextOptions {
   bool debug = true;          ///< KHR_debug: errors become exceptions that carry the object's label
 };
 
-/// A headless OpenGL 4.5 core context. Move-only; made current on construction. Throws RuntimeError with the reason, and
-/// InputError for a device that does not exist (naming those that do).
+/// A headless OpenGL 4.5 core context. Move-only; made current on construction. Throws RuntimeError with the reason,
+/// and InputError for a device that does not exist (naming those that do).
 class Context {
  public:
   explicit Context(const ContextOptions& options = {});

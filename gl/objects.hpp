@@ -1,7 +1,5 @@
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +8,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <epoxy/gl.h>
 
 /// OpenGL objects as move-only values over direct state access. A moved-from object is the empty one (`id() == 0`).
 /// Every object carries a label, shown in debuggers and in every error. A GL context must be current.
@@ -56,7 +56,8 @@ void delete_vertex_array(GLuint);
 
 /// A texture with immutable storage. Sizes in texels; throws RuntimeError naming the label, the size and the device's
 /// limit before allocating when it is too large. `upload` takes tightly packed rows, bottom row first (GL's order), as
-/// float for every format but r32ui; `read` returns the same.
+/// float for every format but r32ui, whose texels are the bits of a uint32 (std::bit_cast); `read` returns the same. A
+/// new texture holds undefined texels and samples nearest, clamped, over all its levels.
 class Texture {
  public:
   Texture() = default;
@@ -90,6 +91,7 @@ class Texture {
   Texture& operator=(Texture&&) noexcept;
 
  private:
+  Texture(std::string label, Format, GLenum target, const std::array<int, 4>& width_height_depth_levels);
   Handle<delete_texture> handle_;
   GLenum target_ = 0;
   Format format_ = Format::rgba8;
@@ -113,9 +115,15 @@ class Framebuffer {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  ~Framebuffer();
+  Framebuffer(Framebuffer&&) noexcept;
+  Framebuffer& operator=(Framebuffer&&) noexcept;
+
  private:
+  void finish(std::span<const Texture* const> colors);
   Handle<delete_framebuffer> handle_;
   int width_ = 0, height_ = 0;
+  unsigned integer_attachments_ = 0;  // bit i: attachment i holds unsigned integers
   std::string label_;
 };
 
@@ -146,6 +154,7 @@ class Buffer {
   Buffer& operator=(Buffer&&) noexcept;
 
  private:
+  void allocate(std::size_t bytes, const void* data);
   Handle<delete_buffer> handle_;
   std::size_t bytes_ = 0;
   GLenum usage_ = GL_STATIC_DRAW;
@@ -170,8 +179,15 @@ class VertexArray {
   void bind() const;
   GLuint id() const { return handle_.id(); }
 
+  ~VertexArray();
+  VertexArray(VertexArray&&) noexcept;
+  VertexArray& operator=(VertexArray&&) noexcept;
+
  private:
+  void add_binding(const Buffer& buffer, std::size_t stride, std::initializer_list<VertexAttribute> attributes,
+                   GLuint divisor);
   Handle<delete_vertex_array> handle_;
+  GLuint bindings_ = 0;
   std::string label_;
 };
 

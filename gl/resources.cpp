@@ -1,12 +1,12 @@
 #include "gl/resources.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include <fmt/format.h>
 
 #include "gl/embedded_resources.hpp"
 #include "gl/error.hpp"

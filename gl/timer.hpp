@@ -45,6 +45,7 @@ class PassTimer {
     PassTimer* timer_;
   };
 
+  /// Frames do not nest; one that an exception left open is dropped. Of unread frames the latest 256 are kept.
   void begin_frame();
   [[nodiscard]] Pass pass(std::string_view name);
   void end_frame();
