@@ -1,11 +1,11 @@
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <span>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/procedural.hpp"
@@ -18,7 +18,9 @@ std::size_t voxel_count(const glm::ivec3& size) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
 }
 
-float voxel_centre(int i, int n) { return (static_cast<float>(i) + 0.5F) / static_cast<float>(n); }
+float voxel_centre(int i, int n) {
+  return (static_cast<float>(i) + 0.5F) / static_cast<float>(n);
+}
 
 // Calls row(y, z, the voxels of that row) for every row of x, in parallel.
 template <class F>

@@ -8,8 +8,12 @@
 namespace pellucid {
 namespace {
 
-float fade(float t) { return t * t * t * (t * (t * 6.0F - 15.0F) + 10.0F); }
-float mix(float a, float b, float t) { return a + t * (b - a); }
+float fade(float t) {
+  return t * t * t * (t * (t * 6.0F - 15.0F) + 10.0F);
+}
+float mix(float a, float b, float t) {
+  return a + t * (b - a);
+}
 
 // Towards the twelve edges of a cube; four are repeated so that four bits of the hash choose one.
 constexpr std::array<std::array<float, 3>, 16> kGradients = {{{1, 1, 0},
@@ -69,13 +73,19 @@ std::uint32_t hash_bits(std::int32_t x, std::int32_t y, std::int32_t z, std::uin
   return hash_bits(h ^ (static_cast<std::uint32_t>(z) * 0xc2b2ae35U));
 }
 
-float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8U) * 0x1p-24F; }
+float unit_float(std::uint32_t bits) {
+  return static_cast<float>(bits >> 8U) * 0x1p-24F;
+}
 
 Random::Random(std::uint32_t seed, std::uint32_t stream) : key_(hash_bits(hash_bits(seed) ^ (stream * 0x9e3779b9U))) {}
 
-float Random::next() { return unit_float(hash_bits(key_ ^ hash_bits(++counter_))); }
+float Random::next() {
+  return unit_float(hash_bits(key_ ^ hash_bits(++counter_)));
+}
 
-float Random::range(float low, float high) { return low + (high - low) * next(); }
+float Random::range(float low, float high) {
+  return low + (high - low) * next();
+}
 
 int Random::below(int n) {
   assert(n > 0);

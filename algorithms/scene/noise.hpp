@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
+
+#include <glm/glm.hpp>
 
 /// Noise and random numbers from integer hashes: the same on every platform for a seed.
 namespace pellucid {
@@ -17,9 +18,9 @@ float unit_float(std::uint32_t bits);
 class Random {
  public:
   explicit Random(std::uint32_t seed, std::uint32_t stream = 0);
-  float next();                       ///< in [0, 1)
-  float range(float low, float high); ///< in [low, high)
-  int below(int n);                   ///< in {0, …, n − 1}
+  float next();                        ///< in [0, 1)
+  float range(float low, float high);  ///< in [low, high)
+  int below(int n);                    ///< in {0, …, n − 1}
 
  private:
   std::uint32_t key_;

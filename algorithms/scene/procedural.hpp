@@ -1,33 +1,37 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "algorithms/scene/scene.hpp"
 
 /// Geometry and volumes made by formula, deterministic for a seed on every platform. Lengths in metres.
 namespace pellucid {
 
-Mesh make_sphere(float radius, int segments);                   ///< `segments` around, half as many from pole to pole
-Mesh make_box(const glm::vec3& size);                           ///< centred on the origin, flat normals
-Mesh make_plane(const glm::vec2& size, int segments);           ///< in y = 0, centred, facing +y, uv in [0,1]²
-Mesh make_cylinder(float radius, float height, int segments);   ///< from y = 0 up, capped
-Mesh make_cone(float radius, float height, int segments);       ///< from y = 0 up, capped
+Mesh make_sphere(float radius, int segments);                  ///< `segments` around, half as many from pole to pole
+Mesh make_box(const glm::vec3& size);                          ///< centred on the origin, flat normals
+Mesh make_plane(const glm::vec2& size, int segments);          ///< in y = 0, centred, facing +y, uv in [0,1]²
+Mesh make_cylinder(float radius, float height, int segments);  ///< from y = 0 up, capped
+Mesh make_cone(float radius, float height, int segments);      ///< from y = 0 up, capped
 Mesh make_torus(float major_radius, float minor_radius, int segments);
-/// Newell's 32 bicubic patches, 2·subdivisions² triangles each, as high as 1.575·scale when scale is 1 (body radius 1.5).
+/// Newell's 32 bicubic patches (at most 2·subdivisions² triangles each), bottom included: stands on y = 0, the spout
+/// towards +x; the body's radius is `scale`, the height 1.575·scale. Lid, body, handle and spout are separate shells.
 Mesh make_teapot(float scale, int subdivisions);
 
-/// A ground with relief and many trees of a few kinds, each kind one mesh that is instanced. Appends meshes, materials and
-/// instances to `scene`.
+/// A ground with relief and many trees of a few kinds, each kind one mesh that is instanced. Appends meshes, materials
+/// and instances to `scene`. Instances are called ground, tree_0 … and undergrowth_0 …
 struct ForestOptions {
   glm::vec2 extent{60.0F};  ///< of the ground, centred
   int trees = 300;
   float clearing_radius = 4.0F;  ///< no trunk this near to `clearing`
   glm::vec2 clearing{0.0F};      ///< x, z
-  float relief_m = 1.5F;         ///< height of the ground's undulation
+  float relief_m = 1.5F;         ///< height of the ground's undulation, about 0
   std::uint32_t seed = 1;
+  float undergrowth = 1.5F;  ///< ferns, rocks and fallen trunks for each tree
 };
+/// Throws InputError when the clearing leaves no room for the trees.
 void add_forest(Scene& scene, const ForestOptions&);
 
 /// Height of that ground at (x, z).
@@ -38,12 +42,13 @@ std::vector<float> make_constant_density(const glm::ivec3& size, float density);
 struct FogOptions {
   std::uint32_t seed = 1;
   int octaves = 4;
-  float frequency = 3.0F;      ///< noise periods across the box
-  float height_falloff = 3.0F; ///< density falls as exp(−falloff · y) with y in [0, 1]
-  float contrast = 0.7F;       ///< 0: no noise, 1: noise down to zero
+  float frequency = 3.0F;       ///< noise periods across the box
+  float height_falloff = 3.0F;  ///< density falls as exp(−falloff · y) with y in [0, 1]
+  float contrast = 0.7F;        ///< 0: no noise, 1: noise down to zero
 };
 std::vector<float> make_fog_density(const glm::ivec3& size, const FogOptions&);
-/// Uniform ball that touches the box's faces, 1 inside and 0 outside, the border voxels by their covered share (Fig. 1a).
+/// Uniform ball that touches the box's faces, 1 inside and 0 outside, the border voxels by their covered share (Fig.
+/// 1a).
 std::vector<float> make_ball_density(const glm::ivec3& size);
 
 }  // namespace pellucid

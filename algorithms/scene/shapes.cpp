@@ -20,7 +20,9 @@ Direction around(int i, int n) {
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
 }
 
-float share(int i, int n) { return static_cast<float>(i) / static_cast<float>(n); }
+float share(int i, int n) {
+  return static_cast<float>(i) / static_cast<float>(n);
+}
 
 void add_vertex(Mesh& mesh, const glm::vec3& position, const glm::vec3& normal, const glm::vec2& uv) {
   mesh.positions.push_back(position);
@@ -28,10 +30,12 @@ void add_vertex(Mesh& mesh, const glm::vec3& position, const glm::vec3& normal, 
   mesh.uvs.push_back(uv);
 }
 
-unsigned next_index(const Mesh& mesh) { return static_cast<unsigned>(mesh.positions.size()); }
+unsigned next_index(const Mesh& mesh) {
+  return static_cast<unsigned>(mesh.positions.size());
+}
 
-// Triangles of a (columns + 1) × (rows + 1) grid of vertices, row by row from `first`. Seen from outside, columns run to
-// the right and rows upwards. A row that is one point has no triangles there.
+// Triangles of a (columns + 1) × (rows + 1) grid of vertices, row by row from `first`. Seen from outside, columns run
+// to the right and rows upwards. A row that is one point has no triangles there.
 void add_grid(Mesh& mesh, unsigned first, int columns, int rows, bool pole_below = false, bool pole_above = false) {
   const auto stride = static_cast<unsigned>(columns) + 1;
   for (int row = 0; row < rows; ++row) {

@@ -7,8 +7,8 @@
 #include "algorithms/scene/procedural.hpp"
 
 // Martin Newell's teapot of 1975 in its 32-patch form, bottom included (the data are in the public domain). Rim, body,
-// lid and bottom are surfaces of revolution, so a control row is a radius, a height and where the circle's inner control
-// points lie; handle and spout are mirrored at y = 0. z is up here; make_teapot() turns it to y up.
+// lid and bottom are surfaces of revolution, so a control row is a radius, a height and where the circle's inner
+// control points lie; handle and spout are mirrored at y = 0. z is up here; make_teapot() turns it to y up.
 namespace pellucid {
 namespace {
 
@@ -22,12 +22,12 @@ struct Ring {
   double circle = kCircle;
 };
 constexpr std::array<std::array<Ring, 4>, 6> kProfiles = {{
-    {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}},    // rim
-    {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}},              // body, upper
-    {{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}},              // body, lower
-    {{{0.0, 3.15}, {0.8, 3.15, 0.5625}, {0.0, 2.85}, {0.2, 2.7}}},       // lid's knob
-    {{{0.2, 2.7}, {0.4, 2.55}, {1.3, 2.55}, {1.3, 2.4}}},                // lid
-    {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}},             // bottom
+    {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}},  // rim
+    {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}},            // body, upper
+    {{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}},            // body, lower
+    {{{0.0, 3.15}, {0.8, 3.15, 0.5625}, {0.0, 2.85}, {0.2, 2.7}}},     // lid's knob
+    {{{0.2, 2.7}, {0.4, 2.55}, {1.3, 2.55}, {1.3, 2.4}}},              // lid
+    {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}},           // bottom
 }};
 
 struct Row {  // from the plane of symmetry, outwards, and back to it
@@ -61,10 +61,14 @@ constexpr std::array<std::array<Row, 4>, 4> kMirrored = {{
 // Exact quarter turns about z, so that neighbouring quadrants share their border bit for bit.
 glm::dvec3 quarter_turns(const glm::dvec3& p, int turns) {
   switch (turns) {
-    case 1: return {-p.y, p.x, p.z};
-    case 2: return {-p.x, -p.y, p.z};
-    case 3: return {p.y, -p.x, p.z};
-    default: return p;
+    case 1:
+      return {-p.y, p.x, p.z};
+    case 2:
+      return {-p.x, -p.y, p.z};
+    case 3:
+      return {p.y, -p.x, p.z};
+    default:
+      return p;
   }
 }
 
@@ -77,8 +81,10 @@ std::vector<Patch> make_patches() {
       for (std::size_t row = 0; row < 4; ++row) {
         const Ring& ring = profile[row];
         const double r = ring.radius, inner = r * ring.circle;
-        const std::array<glm::dvec3, 4> arc = {{{r, 0, ring.z}, {r, inner, ring.z}, {inner, r, ring.z}, {0, r, ring.z}}};
-        for (std::size_t column = 0; column < 4; ++column) patch[row][column] = quarter_turns(arc[column], quadrant);
+        const std::array<glm::dvec3, 4> arc = {
+            {{r, 0, ring.z}, {r, inner, ring.z}, {inner, r, ring.z}, {0, r, ring.z}}};
+        for (std::size_t column = 0; column < 4; ++column)
+          patch[row][column] = quarter_turns(arc[column], quadrant);
       }
       patches.push_back(patch);
     }
@@ -86,8 +92,7 @@ std::vector<Patch> make_patches() {
   for (std::size_t part = 0; part < kMirrored.size(); ++part) {
     for (const double side : {-1.0, 1.0}) {
       Patch patch;
-      // The handle's rows run from the body round and back, the spout's from the body outwards.
-      const bool flip = side > 0.0;
+      const bool flip = side < 0.0;
       for (std::size_t row = 0; row < 4; ++row) {
         const Row& control = kMirrored[part][row];
         for (std::size_t column = 0; column < 4; ++column) {
@@ -145,7 +150,8 @@ Mesh make_teapot(float scale, int subdivisions) {
   const double size = 0.5 * static_cast<double>(scale);
   const auto n = static_cast<unsigned>(subdivisions);
   std::vector<Basis> basis(n + 1);
-  for (unsigned i = 0; i <= n; ++i) basis[i] = bernstein(static_cast<double>(i) / static_cast<double>(n));
+  for (unsigned i = 0; i <= n; ++i)
+    basis[i] = bernstein(static_cast<double>(i) / static_cast<double>(n));
 
   for (const Patch& patch : make_patches()) {
     const auto first = static_cast<unsigned>(mesh.positions.size());
