@@ -32,6 +32,13 @@ glm::vec3 heading(float angle) {
   return {std::cos(angle), 0.0F, -std::sin(angle)};
 }
 
+// Random numbers are drawn one statement at a time, or in braces: the order of evaluation of operands and arguments is
+// the compiler's choice, and a seed must give the same forest with every compiler.
+glm::vec3 random_direction(float min_rise, float max_rise, Random& random) {
+  const glm::vec3 out = heading(random.range(0.0F, kTurn));
+  return glm::normalize(out + kUp * random.range(min_rise, max_rise));
+}
+
 unsigned add_vertex(Mesh& mesh, const glm::vec3& position, const glm::vec3& normal, const glm::vec3& color) {
   mesh.positions.push_back(position);
   mesh.normals.push_back(normal);
