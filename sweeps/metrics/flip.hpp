@@ -23,7 +23,7 @@ struct Exposures {
   bool operator==(const Exposures&) const = default;
 };
 
-/// The automatic exposures of [andersson2021, Sec. 3.3]: the brightest pixel of `reference` and its median one are
+/// The automatic exposures of [andersson2021]: the brightest pixel of `reference` and its median one are
 /// brought to 0.85 by the ACES curve; one exposure per stop between them, at least two. A black reference, which has no
 /// such exposures, gives {0, 0, 2}.
 Exposures automatic_exposures(const Image& reference);
@@ -57,7 +57,7 @@ class FlipReference {
   std::unique_ptr<State> state_;
 };
 
-/// The pooled statistics that the published tool prints [andersson2020, Sec. 5.2]. A weighted percentile p is the
+/// The pooled statistics that the published tool prints [andersson2020]. A weighted percentile p is the
 /// smallest error e such that the errors up to e sum to more than p of the sum of all; it is 0 when every error is 0.
 struct FlipStatistics {
   double mean = 0;
