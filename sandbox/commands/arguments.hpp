@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "algorithms/scene/image.hpp"
+
+/// Arguments that several sub-commands take, read one way.
+namespace pellucid::sandbox {
+
+struct Size {
+  int width = 0;
+  int height = 0;
+};
+/// "720x540". Throws InputError.
+Size parse_size(const std::string& text);
+
+/// "name=value". Throws InputError.
+std::pair<std::string, std::string> parse_assignment(const std::string& text);
+
+/// Throws InputError unless the path ends in one of `extensions` (".exr", …), RuntimeError unless its folder exists:
+/// found out before the work, not after.
+void check_output(const std::filesystem::path& path, std::initializer_list<std::string_view> extensions);
+
+/// How a scene-linear image becomes a PNG.
+struct DisplayOptions {
+  std::string display, view;  ///< of the OpenColorIO config; empty: its default
+  double exposure_ev = 0;
+};
+
+/// EXR as it is (half), PNG through the display transform.
+void write_picture(const std::filesystem::path& path, const ImageFile& file, const DisplayOptions&);
+
+}  // namespace pellucid::sandbox

@@ -1,0 +1,210 @@
+// pellucid list, describe, devices.
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/scene/scene.hpp"
+#include "algorithms/technique.hpp"
+#include "gl/context.hpp"
+#include "sandbox/commands/commands.hpp"
+
+namespace pellucid::sandbox {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Paper {
+  std::string_view name, title;
+};
+constexpr Paper kPapers[] = {
+    {"sampling_hulls",
+     "Imagire, Johan, Tamura, Nishita 2007: Anti-aliased and real-time rendering of scenes with light "
+     "scattering effects"}};
+
+ordered_json techniques_json() {
+  ordered_json out = ordered_json::array();
+  for (const TechniqueInfo& t : techniques()) {
+    out.push_back(
+        {{"name", t.name}, {"title", t.title}, {"reference", t.reference}, {"baseline", t.baseline}, {"doc", t.doc}});
+  }
+  return out;
+}
+
+ordered_json scenes_json() {
+  ordered_json out = ordered_json::array();
+  for (const SceneInfo& s : list_scenes()) {
+    out.push_back({{"name", s.name}, {"title", s.title}, {"description", s.description}, {"module", s.module}});
+  }
+  return out;
+}
+
+ordered_json papers_json() {
+  ordered_json out = ordered_json::array();
+  for (const Paper& p : kPapers)
+    out.push_back({{"name", p.name}, {"title", p.title}});
+  return out;
+}
+
+void print_rows(std::string_view heading, const ordered_json& rows, const char* text_field) {
+  fmt::print("{}\n", heading);
+  for (const auto& row : rows) {
+    fmt::print("  {:<20} {}\n", row.at("name").get<std::string>(), row.at(text_field).get<std::string>());
+  }
+}
+
+int list(const std::string& what, bool json) {
+  ordered_json all;
+  if (what.empty() || what == "techniques") all["techniques"] = techniques_json();
+  if (what.empty() || what == "scenes") all["scenes"] = scenes_json();
+  if (what.empty() || what == "papers") all["papers"] = papers_json();
+  if (json) {
+    fmt::print("{}\n", (what.empty() ? all : all[what]).dump(2));
+    return kDone;
+  }
+  if (all.contains("techniques")) print_rows("techniques", all["techniques"], "doc");
+  if (all.contains("scenes")) print_rows("scenes", all["scenes"], "title");
+  if (all.contains("papers")) print_rows("papers", all["papers"], "title");
+  return kDone;
+}
+
+ordered_json value_json(const Value& value) {
+  return std::visit([](const auto& v) { return ordered_json(v); }, value);
+}
+
+ordered_json parameters_json(std::span<const ParameterInfo> infos) {
+  ordered_json out = ordered_json::array();
+  for (const ParameterInfo& p : infos) {
+    ordered_json entry{{"name", p.name}, {"type", name(p.type)}, {"default", value_json(p.default_value)}};
+    if (p.type == ValueType::choice) entry["choices"] = p.choices;
+    if (p.type == ValueType::integer || p.type == ValueType::real) {
+      entry["min"] = p.min;
+      entry["max"] = p.max;
+    }
+    entry["unit"] = p.unit;
+    entry["symbol"] = p.symbol;
+    entry["cite"] = p.cite;
+    entry["change"] = name(p.when);
+    entry["doc"] = p.doc;
+    out.push_back(std::move(entry));
+  }
+  return out;
+}
+
+std::string range_text(const ParameterInfo& p) {
+  switch (p.type) {
+    case ValueType::boolean:
+      return "true|false";
+    case ValueType::choice:
+      return fmt::format("{}", fmt::join(p.choices, "|"));
+    case ValueType::integer:
+    case ValueType::real:
+      return fmt::format("[{}, {}]{}{}", p.min, p.max, p.unit.empty() ? "" : " ", p.unit);
+  }
+  return "";
+}
+
+void print_parameters(std::span<const ParameterInfo> infos) {
+  for (const ParameterInfo& p : infos) {
+    fmt::print("  {:<14} {}{}\n", p.name, p.symbol.empty() ? "" : p.symbol + ": ", p.doc);
+    fmt::print("  {:<14}   {} in {}, default {}; {}; a change costs: {}\n", "", name(p.type), range_text(p),
+               to_text(p.default_value), p.cite, name(p.when));
+  }
+}
+
+// A technique by its name; else a scene by its, whose own parameters are shown.
+int describe(const std::string& wanted, bool json) {
+  const auto scenes = list_scenes();
+  const auto scene = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& s) { return s.name == wanted; });
+  if (scene != scenes.end() || wanted.ends_with(".toml")) {
+    Scene loaded = load_scene(wanted);
+    if (json) {
+      ordered_json views = ordered_json::array();
+      for (const View& v : loaded.views)
+        views.push_back(v.name);
+      fmt::print("{}\n", ordered_json{{"name", loaded.name},
+                                      {"title", loaded.title},
+                                      {"description", loaded.description},
+                                      {"stand_in", loaded.stand_in},
+                                      {"views", views},
+                                      {"parameters", parameters_json(loaded.parameters().infos())}}
+                             .dump(2));
+      return kDone;
+    }
+    fmt::print("{}: {}\n{}\n", loaded.name, loaded.title, loaded.description);
+    if (!loaded.stand_in.empty()) fmt::print("stands in: {}\n", loaded.stand_in);
+    fmt::print("views:");
+    for (const View& v : loaded.views)
+      fmt::print(" {}", v.name);
+    fmt::print("\nparameters (with the prefix scene.)\n");
+    print_parameters(loaded.parameters().infos());
+    return kDone;
+  }
+  const TechniqueInfo& technique = find_technique(wanted);
+  if (json) {
+    fmt::print("{}\n", ordered_json{{"name", technique.name},
+                                    {"title", technique.title},
+                                    {"reference", technique.reference},
+                                    {"baseline", technique.baseline},
+                                    {"doc", technique.doc},
+                                    {"parameters", parameters_json(technique.table().infos())}}
+                           .dump(2));
+    return kDone;
+  }
+  fmt::print("{}: {} ({})\n{}\nparameters\n", technique.name, technique.title, technique.reference, technique.doc);
+  print_parameters(technique.table().infos());
+  return kDone;
+}
+
+int devices(bool json) {
+  const std::vector<gl::Device> found = gl::list_devices();
+  if (json) {
+    ordered_json out = ordered_json::array();
+    for (const gl::Device& d : found) {
+      out.push_back({{"index", d.index < 0 ? ordered_json() : ordered_json(d.index)},
+                     {"platform", d.platform},
+                     {"vendor", d.vendor},
+                     {"renderer", d.renderer},
+                     {"version", d.version}});
+    }
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    for (const gl::Device& d : found) {
+      fmt::print("{:>12}  {}, {}, OpenGL {}\n", d.index < 0 ? d.platform : fmt::format("--device {}", d.index),
+                 d.vendor, d.renderer, d.version);
+    }
+  }
+  if (found.empty()) throw RuntimeError("no EGL device or platform gives an OpenGL 4.5 core context");
+  return kDone;
+}
+
+}  // namespace
+
+void add_list(CLI::App& root, std::vector<Command>& commands) {
+  struct Options {
+    std::string what;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+
+  CLI::App* list_app = root.add_subcommand("list", "List techniques, scenes and papers");
+  list_app->add_option("what", options->what, "techniques, scenes or papers; all without it")
+      ->check(CLI::IsMember({"techniques", "scenes", "papers"}));
+  list_app->add_flag("--json", options->json, "Print JSON");
+  list_app->footer("Example: pellucid list scenes");
+  commands.push_back({list_app, [options] { return list(options->what, options->json); }});
+
+  CLI::App* describe_app = root.add_subcommand("describe", "Show the parameters of a technique, or of a scene");
+  describe_app->add_option("name", options->what, "A technique or a scene")->required();
+  describe_app->add_flag("--json", options->json, "Print JSON");
+  describe_app->footer("Example: pellucid describe sampling_hulls");
+  commands.push_back({describe_app, [options] { return describe(options->what, options->json); }});
+
+  CLI::App* devices_app = root.add_subcommand("devices", "List the devices that can render");
+  devices_app->add_flag("--json", options->json, "Print JSON");
+  devices_app->footer(
+      "Example: pellucid devices\nThe number is what --device takes; without it the first device is used.");
+  commands.push_back({devices_app, [options] { return devices(options->json); }});
+}
+
+}  // namespace pellucid::sandbox

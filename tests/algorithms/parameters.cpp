@@ -1,0 +1,141 @@
+#include "algorithms/parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include "algorithms/technique.hpp"
+
+namespace pellucid {
+namespace {
+
+enum class Mode { slow, quick };
+
+struct Sample {
+  bool flag = true;
+  int count = 4;
+  float width = 0.5F;
+  Mode mode = Mode::quick;
+  static constexpr void parameters(auto& self, auto&& visit) {
+    visit(PARAM(flag), {.cite = "Sec. 1", .doc = "a flag"});
+    visit(PARAM(count), {.symbol = "M", .range = {1, 64}, .cite = "Sec. 2", .doc = "a count", .when = Change::program});
+    visit(PARAM(width), {.range = {0, 1}, .cite = "Sec. 3", .doc = "a width", .unit = "m"});
+    visit(PARAM(mode), {.cite = "Sec. 4", .doc = "a mode", .choices = "slow|quick"});
+  }
+};
+static_assert(well_formed<Sample>());
+
+struct Forgotten {
+  int a = 1;
+  int b = 1;
+  static constexpr void parameters(auto& self, auto&& visit) {
+    visit(PARAM(a), {.range = {0, 2}, .cite = "x", .doc = "declared"});
+  }
+};
+static_assert(!well_formed<Forgotten>());
+
+struct OutOfRange {
+  int a = 5;
+  static constexpr void parameters(auto& self, auto&& visit) {
+    visit(PARAM(a), {.range = {0, 2}, .cite = "x", .doc = "default too large"});
+  }
+};
+static_assert(!well_formed<OutOfRange>());
+
+struct Undocumented {
+  int a = 1;
+  static constexpr void parameters(auto& self, auto&& visit) { visit(PARAM(a), {.range = {0, 2}, .cite = "x"}); }
+};
+static_assert(!well_formed<Undocumented>());
+
+std::string message(auto&& f) {
+  try {
+    f();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(Parameters, TableKeepsWhatWasDeclared) {
+  const auto infos = parameter_table<Sample>().infos();
+  ASSERT_EQ(infos.size(), 4U);
+  EXPECT_EQ(infos[1].symbol, "M");
+  EXPECT_EQ(infos[1].when, Change::program);
+  EXPECT_EQ(std::get<std::int64_t>(infos[1].default_value), 4);
+  EXPECT_EQ(infos[2].unit, "m");
+  EXPECT_EQ(infos[3].choices, (std::vector<std::string>{"slow", "quick"}));
+  EXPECT_EQ(std::get<std::string>(infos[3].default_value), "quick");
+}
+
+TEST(Parameters, AssignAndReadBack) {
+  Sample sample;
+  const ParameterRef ref = bind_parameters(sample);
+  EXPECT_EQ(ref.assign("count", std::int64_t{7}, "sample"), Change::program);
+  EXPECT_EQ(ref.assign("width", std::int64_t{1}, "sample"), Change::uniform);  // an integer where a real is asked for
+  ref.assign("flag", false, "sample");
+  ref.assign("mode", std::string("slow"), "sample");
+  EXPECT_EQ(sample.count, 7);
+  EXPECT_EQ(sample.width, 1.0F);
+  EXPECT_FALSE(sample.flag);
+  EXPECT_EQ(sample.mode, Mode::slow);
+  EXPECT_EQ(to_text(ref.get("mode")), "slow");
+  EXPECT_EQ(to_text(ref.get("count")), "7");
+}
+
+TEST(Parameters, ErrorsNameTheParameterItsRangeAndTheNearestName) {
+  Sample sample;
+  const ParameterRef ref = bind_parameters(sample);
+  EXPECT_EQ(message([&] { ref.assign("cuont", std::int64_t{1}, "sample"); }),
+            "unknown parameter 'cuont' of sample; did you mean 'count'?");
+  EXPECT_EQ(message([&] { ref.assign("zzzzzz", std::int64_t{1}, "sample"); }),
+            "unknown parameter 'zzzzzz' of sample; it has flag, count, width, mode");
+  EXPECT_EQ(message([&] { ref.assign("count", std::int64_t{65}, "sample"); }),
+            "sample: count = 65 is out of range [1, 64]");
+  EXPECT_EQ(message([&] { ref.assign("count", 2.5, "sample"); }), "sample: count = 2.5 is not an integer in [1, 64]");
+  EXPECT_EQ(message([&] { ref.assign("width", std::nan(""), "sample"); }),
+            "sample: width = nan is out of range [0, 1]");
+  EXPECT_EQ(message([&] { ref.assign("flag", std::int64_t{1}, "sample"); }), "sample: flag = 1 is not true or false");
+  EXPECT_EQ(message([&] { ref.assign("mode", std::string("slwo"), "sample"); }),
+            "sample: mode = 'slwo' is not one of slow, quick; did you mean 'slow'?");
+  EXPECT_EQ(sample.count, 4) << "a refused value must not be stored";
+}
+
+TEST(Parameters, TextIsReadWholeOrRefused) {
+  const ParameterTable& table = parameter_table<Sample>();
+  const ParameterInfo& count = *table.find("count");
+  EXPECT_EQ(std::get<std::int64_t>(parse_value(count, "12", "sample")), 12);
+  for (const char* text : {"", "4x", "4.0", " 4", "0x4", "99999999999999999999"}) {
+    EXPECT_NE(message([&] { parse_value(count, text, "sample"); }), "no error") << "'" << text << "'";
+  }
+  EXPECT_DOUBLE_EQ(std::get<double>(parse_value(*table.find("width"), "2.5e-1", "sample")), 0.25);
+  EXPECT_EQ(message([&] { parse_value(*table.find("width"), "inf", "sample"); }),
+            "sample: width = inf is out of range [0, 1]");
+}
+
+// Every parameter of every technique takes its least, its default and its greatest value, and gives it back.
+TEST(Parameters, EveryTechniqueTakesItsWholeRange) {
+  for (const TechniqueInfo& info : techniques()) {
+    const auto technique = info.make();
+    const ParameterRef ref = technique->parameters();
+    for (const ParameterInfo& p : ref.infos()) {
+      std::vector<Value> values{p.default_value};
+      if (p.type == ValueType::integer) {
+        values.insert(values.end(), {static_cast<std::int64_t>(p.min), static_cast<std::int64_t>(p.max)});
+      } else if (p.type == ValueType::real) {
+        values.insert(values.end(), {p.min, p.max});
+      } else if (p.type == ValueType::boolean) {
+        values.insert(values.end(), {false, true});
+      } else {
+        values.insert(values.end(), p.choices.begin(), p.choices.end());
+      }
+      for (const Value& value : values) {
+        ref.assign(p.name, value, info.name);
+        EXPECT_EQ(to_text(ref.get(p.name)), to_text(value)) << info.name << "." << p.name;
+      }
+      EXPECT_NE(p.doc, "");
+      EXPECT_NE(p.cite, "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
