@@ -15,32 +15,38 @@ namespace pellucid {
 /// Surfaces as seen at each pixel centre, rows from the top: radiance, and the distance from the eye along the pixel's
 /// ray [m], infinite where nothing is hit.
 struct SurfaceLayer {
-  Image radiance;                 ///< RGB
-  std::vector<double> distance_m; ///< one per pixel
+  Image radiance;                  ///< RGB
+  std::vector<double> distance_m;  ///< one per pixel
 };
 
 /// Traces the opaque surfaces and the environment behind them with Embree.
 SurfaceLayer trace_surfaces(const Scene&, const Camera&);
 
+/// The density is a cubic of the distance between the planes of voxel centres that a ray crosses, so the optical depth
+/// is exact, and with directional and ambient light alone the radiance too. With point and spot lights each of these
+/// spans is cut into equal steps (three-point Gauss–Legendre quadrature) whose number is doubled.
 struct ReferenceOptions {
-  /// Per pixel the number of steps is doubled until the result changes by less than this, or until max_steps.
+  /// Doubling ends when it changes no channel of the pixel by this much [radiance]. Not below the rounding of float64.
   double tolerance = 1e-4;
-  int min_steps = 64;
-  int max_steps = 8192;
+  int min_steps = 64;  ///< along a ray, before the first doubling
+  int max_steps =
+      8192;  ///< along a ray; a pixel that needs more is counted as unconverged. One doubling is always done
   std::function<void(double)> progress;  ///< share done, from any thread
 };
 
 struct Reference {
-  Image image;           ///< RGBA; alpha is the medium's transmittance
-  Image mask;            ///< one channel: 1 where the pixel's ray meets the volume before a surface
-  double step_error_max = 0;   ///< largest |radiance(n) − radiance(n/2)| of any pixel and channel at its last doubling
+  Image image;  ///< RGBA; alpha is the medium's transmittance
+  Image mask;   ///< one channel: 1 where the pixel's ray meets the volume before a surface
+  /// A pixel's step error: |radiance(n) − radiance(n/2)| at its last doubling in its worst channel (0 where no steps
+  /// are needed), plus the rounding of the result to the image's float32. The largest and the mean over the frame.
+  double step_error_max = 0;
   double step_error_mean = 0;
   double unconverged_share = 0;  ///< pixels that reached max_steps above the tolerance
 };
 
-/// Integrates dL/dt = σ(t)·C(t)·T(t) from the near plane to `surfaces` and adds T times their radiance. Taking the
-/// surfaces from the shared raster pass instead of trace_surfaces() makes silhouettes identical, so that an error metric
-/// sees the medium alone; both are offered (`--surfaces rays|raster`).
+/// Integrates dL/dt = σ(t)·C(t)·T(t) in float64 from the near plane to `surfaces` and adds T times their radiance.
+/// Taking the surfaces from the shared raster pass instead of trace_surfaces() makes silhouettes identical, so that an
+/// error metric sees the medium alone; both are offered (`--surfaces rays|raster`).
 Reference render_reference(const Scene&, const Camera&, const SurfaceLayer& surfaces, const ReferenceOptions& = {});
 
 }  // namespace pellucid
