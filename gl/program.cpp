@@ -9,6 +9,7 @@
 #include "gl/current_context.hpp"
 #include "gl/error.hpp"
 #include "gl/label.hpp"
+#include "gl/link.hpp"
 
 namespace pellucid::gl {
 
@@ -36,11 +37,11 @@ const StageKind& stage_kind(const Stage& stage) {
       "'{}' is no shader stage: its name must end in .vert.glsl, .frag.glsl, .geom.glsl or .comp.glsl", stage));
 }
 
-struct CompiledStage {
-  Handle<delete_shader> shader;
-  ExpandedSource source;
-  std::string_view log_heading;
-};
+std::string_view log_heading(GLenum type) {
+  for (const StageKind& kind : kStages)
+    if (kind.type == type) return kind.log_heading;
+  return "unknown stage";
+}
 
 template <class Get>
 std::string info_log(GLuint id, GLint length, Get get) {
@@ -51,14 +52,12 @@ std::string info_log(GLuint id, GLint length, Get get) {
   return log;
 }
 
-CompiledStage compile(const Stage& stage, const Defines& defines) {
-  const StageKind& kind = stage_kind(stage);
-  CompiledStage result{.shader = {}, .source = expand_includes(stage, defines), .log_heading = kind.log_heading};
-  const GLuint id = glCreateShader(kind.type);
-  result.shader = Handle<delete_shader>(id);
-  set_label(GL_SHADER, id, stage);
-  const char* text = result.source.text.c_str();
-  const auto length = static_cast<GLint>(result.source.text.size());
+Handle<delete_shader> compile(const StageSource& stage) {
+  const GLuint id = glCreateShader(stage.type);
+  Handle<delete_shader> shader(id);
+  set_label(GL_SHADER, id, stage.source.files.front());
+  const char* text = stage.source.text.c_str();
+  const auto length = static_cast<GLint>(stage.source.text.size());
   glShaderSource(id, 1, &text, &length);
   glCompileShader(id);
   GLint compiled = GL_FALSE;
@@ -68,14 +67,15 @@ CompiledStage compile(const Stage& stage, const Defines& defines) {
     glGetShaderiv(id, GL_INFO_LOG_LENGTH, &log_length);
     const std::string log = info_log(id, log_length, [](auto... args) { glGetShaderInfoLog(args...); });
     detail::drop_errors();
-    throw RuntimeError(log.empty() ? fmt::format("{}: does not compile, and the driver says no more", stage)
-                                   : explain_log(log, result.source));
+    throw RuntimeError(
+        log.empty() ? fmt::format("{}: does not compile, and the driver says no more", stage.source.files.front())
+                    : explain_log(log, stage.source));
   }
-  return result;
+  return shader;
 }
 
 // A link log may have a part for each stage under a heading of its own.
-std::string explain_link_log(const std::string& log, const std::vector<CompiledStage>& stages) {
+std::string explain_link_log(const std::string& log, const std::vector<StageSource>& stages) {
   std::string out, part;
   const ExpandedSource* source = &stages.front().source;
   const auto flush = [&] {
@@ -88,8 +88,9 @@ std::string explain_link_log(const std::string& log, const std::vector<CompiledS
     const std::size_t end = std::min(log.find('\n', at), log.size());
     const std::string_view line(log.data() + at, end - at);
     at = end + 1;
-    const auto named = std::find_if(stages.begin(), stages.end(),
-                                    [&](const CompiledStage& stage) { return line.starts_with(stage.log_heading); });
+    const auto named = std::find_if(stages.begin(), stages.end(), [&](const StageSource& stage) {
+      return line.starts_with(log_heading(stage.type));
+    });
     if (named != stages.end()) {
       flush();
       source = &named->source;
@@ -102,19 +103,28 @@ std::string explain_link_log(const std::string& log, const std::vector<CompiledS
   return out;
 }
 
-GLuint link(const std::string& label, const std::vector<Stage>& stage_names, const Defines& defines) {
-  assert(!stage_names.empty());
-  std::vector<CompiledStage> stages;
-  for (const Stage& stage : stage_names)
-    stages.push_back(compile(stage, defines));
+GLuint build(const std::string& label, const std::vector<Stage>& names, const Defines& defines) {
+  std::vector<StageSource> stages;
+  for (const Stage& name : names)
+    stages.push_back({.type = stage_kind(name).type, .source = expand_includes(name, defines)});
+  return link_program(label, stages);
+}
+
+}  // namespace
+
+GLuint link_program(const std::string& label, const std::vector<StageSource>& stages) {
+  assert(!stages.empty());
+  std::vector<Handle<delete_shader>> shaders;
+  for (const StageSource& stage : stages)
+    shaders.push_back(compile(stage));
   Handle<delete_program> program(glCreateProgram());
   const GLuint id = program.id();
   set_label(GL_PROGRAM, id, label);
-  for (const CompiledStage& stage : stages)
-    glAttachShader(id, stage.shader.id());
+  for (const auto& shader : shaders)
+    glAttachShader(id, shader.id());
   glLinkProgram(id);
-  for (const CompiledStage& stage : stages)
-    glDetachShader(id, stage.shader.id());
+  for (const auto& shader : shaders)
+    glDetachShader(id, shader.id());
   GLint linked = GL_FALSE;
   glGetProgramiv(id, GL_LINK_STATUS, &linked);
   if (linked == GL_FALSE) {
@@ -123,8 +133,8 @@ GLuint link(const std::string& label, const std::vector<Stage>& stage_names, con
     const std::string log = info_log(id, log_length, [](auto... args) { glGetProgramInfoLog(args...); });
     detail::drop_errors();
     std::string names;
-    for (const Stage& stage : stage_names)
-      names += (names.empty() ? "" : " + ") + stage;
+    for (const StageSource& stage : stages)
+      names += (names.empty() ? "" : " + ") + stage.source.files.front();
     throw RuntimeError(fmt::format("'{}' does not link ({}): {}", label, names,
                                    log.empty() ? "the driver says no more" : explain_link_log(log, stages)));
   }
@@ -132,15 +142,13 @@ GLuint link(const std::string& label, const std::vector<Stage>& stage_names, con
   return program.release();
 }
 
-}  // namespace
-
 void delete_program(GLuint id) {
   if (detail::has_current()) glDeleteProgram(id);
 }
 
 Program::Program(std::string label, std::vector<Stage> stages, Defines defines)
     : label_(std::move(label)), stages_(std::move(stages)), defines_(std::move(defines)) {
-  handle_ = Handle<delete_program>(link(label_, stages_, defines_));
+  handle_ = Handle<delete_program>(build(label_, stages_, defines_));
 }
 
 Program::~Program() = default;
@@ -168,7 +176,7 @@ void Program::use() const {
 std::string Program::reload() {
   assert(!stages_.empty() && "an empty program has no sources");
   try {
-    handle_ = Handle<delete_program>(link(label_, stages_, defines_));
+    handle_ = Handle<delete_program>(build(label_, stages_, defines_));
     locations_.clear();
     return {};
   } catch (const RuntimeError& error) {
