@@ -69,7 +69,7 @@ struct RunBlock {
   std::vector<Axis> axes;
   std::vector<FixedValue> fixed;
   std::vector<Constraint> constraints;
-  std::vector<std::string> metrics;  ///< groups, see metric_groups()
+  std::vector<std::string> metrics;  ///< of metric_names() (metrics/metrics.hpp), in that order
   bool baseline = false;             ///< its first point is re-measured during the sweep
   TimingLimits timing;
   ReferenceSettings reference;
@@ -85,9 +85,6 @@ struct Spec {
   double timeout_s = 600;  ///< a point that takes longer is recorded as failed
   std::vector<RunBlock> blocks;
 };
-
-/// What `metrics` may list: mse, rmse, psnr, ssim, flip.
-const std::vector<std::string>& metric_groups();
 
 /// Throws InputError "source:line:column: …" for the first thing wrong.
 Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& = installed_catalogue());

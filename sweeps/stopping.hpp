@@ -17,10 +17,11 @@ struct Interval {
   double high = 0;
 };
 
-/// The percentile bootstrap interval of the median, at the limit of infinitely many resamples, so nothing is random:
-/// the median of a resample of n is at most the k-th order statistic exactly when at least half of n draws fall on the
-/// k smallest samples, which is a binomial tail. With an even n the lower bound is taken of the lower and the upper
-/// bound of the upper middle sample, which is never too narrow. `sorted` ascending, not empty.
+/// The percentile bootstrap interval of the median (Efron 1979) at the limit of infinitely many resamples, so that
+/// nothing is random: the r-th smallest of n draws with replacement is at most the k-th order statistic exactly when at
+/// least r draws fall on the k smallest samples, which is a binomial tail with p = k/n. The median of an even n lies
+/// between two ranks; the bounds are taken of the outer one each, which is never too narrow. `sorted` ascending, not
+/// empty.
 Interval bootstrap_median_interval(std::span<const double> sorted, double confidence = 0.95);
 
 struct TimingSummary {

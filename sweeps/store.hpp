@@ -60,6 +60,7 @@ class Store {
 
   std::vector<StoredPoint> points() const;
   std::vector<double> samples(const std::string& point) const;
+  /// Of the sweep's latest baseline point, in order of time.
   std::vector<BaselineSample> baselines(const std::string& sweep) const;
   std::vector<BlockStatus> status() const;
   /// Text of the spec that was last run under this name.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "algorithms/parameters.hpp"
+
+namespace pellucid::sweeps {
+
+/// `{ from, to, steps, log2 }` of a spec.
+struct AxisRange {
+  double from = 0;
+  double to = 0;
+  std::optional<std::int64_t> steps;  ///< values, both ends included; at least 2
+  bool log2 = false;                  ///< without steps: doubling from `from` to `to`, which must be hit
+};
+
+/// The values of a range for a parameter of integer or real type, in its own type. An integer parameter takes only
+/// ranges that fall on integers. Throws InputError without a position. Does not check the parameter's own range.
+std::vector<Value> expand_range(const ParameterInfo&, const AxisRange&);
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pellucid::sweeps {
+
+/// The commit that this binary was built from (40 hex digits, or "unknown" outside a git tree), and whether the tree
+/// had changes or new files then. Written by the build (commit.cmake).
+extern const char* const kCommit;
+extern const bool kDirty;
+
+/// "2007-10-29T12:34:56Z"
+std::string utc_text(double unix_s);
+/// Wall clock.
+double unix_now_s();
+
+/// `text` as one word of a POSIX shell, quoted only where it must be.
+std::string shell_word(const std::string& text);
+std::string shell_line(const std::vector<std::string>& argv);
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace pellucid::sweeps {
+
+/// A child process that reads and writes lines. It lies in a process group of its own, so that Ctrl-C at a terminal
+/// reaches the parent alone, and dies with the parent. Destroying it kills it.
+class WorkerProcess {
+ public:
+  /// Starts `command` (looked up in PATH when it has no slash). Throws RuntimeError when the system refuses; a program
+  /// that is missing shows as an end with status 127.
+  explicit WorkerProcess(const std::vector<std::string>& command);
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  /// False when the child no longer reads.
+  bool send(const std::string& line);
+
+  enum class Event { line, ended, timeout, stopped };
+  struct Received {
+    Event event = Event::timeout;
+    std::string line;  ///< without the newline; at `ended`, what came without one
+  };
+  /// Waits for the next whole line until `deadline`. `idle` is called a few times a second; when it returns false the
+  /// wait is `stopped`.
+  Received receive(std::chrono::steady_clock::time_point deadline, const std::function<bool()>& idle);
+
+  /// Kills it if it runs, waits, and tells how it ended: "killed by signal 11 (Segmentation fault)", "ended with status
+  /// 1".
+  std::string end();
+  /// Gives it a moment to end by itself after its input has been closed.
+  void close();
+  /// The last line that it wrote to standard error; empty without one.
+  std::string last_words() const;
+  pid_t pid() const { return pid_; }
+
+ private:
+  bool read_into(int& file, std::string& buffer);
+  pid_t pid_ = -1;
+  int to_ = -1, from_ = -1, errors_ = -1;
+  std::string input_, error_tail_;
+};
+
+}  // namespace pellucid::sweeps
