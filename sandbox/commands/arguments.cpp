@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,14 @@ void check_output(const std::filesystem::path& path, std::initializer_list<std::
   if (!std::filesystem::is_directory(folder, error)) {
     throw RuntimeError(fmt::format("cannot write {}: {} is not a folder", path.string(), folder.string()));
   }
+}
+
+std::vector<std::string> process_arguments() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> arguments;
+  for (std::string argument; std::getline(file, argument, '\0');)
+    arguments.push_back(argument);
+  return arguments;
 }
 
 void write_picture(const std::filesystem::path& path, const ImageFile& file, const DisplayOptions& options) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "algorithms/scene/image.hpp"
 
@@ -23,6 +25,9 @@ std::pair<std::string, std::string> parse_assignment(const std::string& text);
 /// Throws InputError unless the path ends in one of `extensions` (".exr", …), RuntimeError unless its folder exists:
 /// found out before the work, not after.
 void check_output(const std::filesystem::path& path, std::initializer_list<std::string_view> extensions);
+
+/// This process's command line, for the record.
+std::vector<std::string> process_arguments();
 
 /// How a scene-linear image becomes a PNG.
 struct DisplayOptions {

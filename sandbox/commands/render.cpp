@@ -43,9 +43,16 @@ void require_finite(const Image& image, const std::string& what) {
 }
 
 // What a file must know to be made again (`pellucid reproduce FILE.exr`), and where it comes from.
-Attributes attributes(const char* command, const ordered_json& recipe, const ordered_json& provenance) {
-  return {
-      {"pellucid.command", command}, {"pellucid.recipe", recipe.dump()}, {"pellucid.provenance", provenance.dump()}};
+ordered_json provenance() {
+  return {{"version", PELLUCID_VERSION},
+          {"commit", sweeps::kCommit},
+          {"dirty", sweeps::kDirty},
+          {"started_utc", sweeps::utc_text(sweeps::unix_now_s())},
+          {"argv", process_arguments()}};
+}
+
+Attributes attributes(const char* command, const ordered_json& recipe, const ordered_json& origin) {
+  return {{"pellucid.command", command}, {"pellucid.recipe", recipe.dump()}, {"pellucid.provenance", origin.dump()}};
 }
 
 int render(const Options& options) {
@@ -69,11 +76,11 @@ int render(const Options& options) {
 
   ordered_json recipe{{"scene", options.scene}, {"technique", options.technique}, {"view", session.camera().view.name},
                       {"width", size.width},    {"height", size.height},          {"parameters", session.parameters()}};
-  ordered_json provenance = sweeps::provenance();
-  provenance["scene_hash"] = session.scene().content_hash();
-  provenance["device"] = context.device().renderer;
-  provenance["driver"] = context.device().version;
-  file.attributes = attributes("render", recipe, provenance);
+  ordered_json origin = provenance();
+  origin["scene_hash"] = session.scene().content_hash();
+  origin["device"] = context.device().renderer;
+  origin["driver"] = context.device().version;
+  file.attributes = attributes("render", recipe, origin);
   write_picture(options.output, file, options.display);
 
   if (options.json) {
@@ -92,7 +99,7 @@ int render(const Options& options) {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     out["peak_rss_bytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
-    out["provenance"] = provenance;
+    out["provenance"] = origin;
     out["output"] = options.output.string();
     fmt::print("{}\n", out.dump(2));
   } else {
@@ -154,12 +161,12 @@ int reference(const Options& options) {
       {"scene", options.scene},         {"view", camera.view.name},     {"width", size.width},
       {"height", size.height},          {"surfaces", options.surfaces}, {"tolerance", options.tolerance},
       {"max_steps", options.max_steps}, {"parameters", parameters}};
-  ordered_json provenance = sweeps::provenance();
-  provenance["scene_hash"] = scene.content_hash();
+  ordered_json origin = provenance();
+  origin["scene_hash"] = scene.content_hash();
   ImageFile file;
   file.image = result.image;
   file.layers["mask"] = result.mask;
-  file.attributes = attributes("reference", recipe, provenance);
+  file.attributes = attributes("reference", recipe, origin);
   file.attributes["pellucid.reference_error"] = errors.dump();
   write_picture(options.output, file, options.display);
   if (options.json) {
