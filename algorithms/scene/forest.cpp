@@ -21,6 +21,8 @@ namespace {
 constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
 constexpr float kUndulation_m = 16.0F;  // period of the ground's largest waves
 
+constexpr float kNear_m = 10.0F;  // from the clearing's edge: finer meshes are used up to here
+
 // Streams of one seed, so that more trees leave the ferns where they were.
 enum Stream : std::uint32_t { kPlaces = 11, kKinds = 12, kUndergrowth = 13 };
 
@@ -38,7 +40,7 @@ glm::vec3 ground_color(const ForestOptions& options, float x, float z, float hei
 Mesh make_ground(const ForestOptions& options) {
   // About half a metre between vertices, within what a software rasteriser draws quickly.
   const int segments =
-      std::clamp(static_cast<int>(std::ceil(2.0F * std::max(options.extent.x, options.extent.y))), 8, 112);
+      std::clamp(static_cast<int>(std::ceil(2.0F * std::max(options.extent.x, options.extent.y))), 8, 96);
   Mesh mesh = make_plane(options.extent, segments);
   mesh.name = "forest_ground";
   mesh.uvs.clear();
@@ -139,7 +141,7 @@ glm::mat4 plant(const ForestOptions& options, const glm::vec2& place, float sink
 }
 
 struct Kind {
-  Mesh (*make)(std::uint32_t seed);
+  Mesh (*make)(std::uint32_t seed, forest::Detail);
   int variants;
   float share;       // of all plants
   float share_near;  // beside the clearing, where low boughs would hide the view
@@ -154,16 +156,23 @@ constexpr std::array<Kind, 3> kUnderTrees = {{{forest::make_fern, 2, 0.86F, 0.86
                                               {forest::make_rock, 1, 0.09F, 0.09F, 0.4F, 1.6F},
                                               {forest::make_fallen_trunk, 1, 0.05F, 0.05F, 0.6F, 1.3F}}};
 
-// Adds the meshes of every kind; returns the index of each kind's first.
+// Where the meshes of a kind begin: its variants near, then the same far.
+struct FirstMesh {
+  int near, far;
+};
+
 template <std::size_t N>
-std::array<int, N> add_meshes(Scene& scene, const std::array<Kind, N>& kinds, std::uint32_t seed) {
-  std::array<int, N> first{};
+std::array<FirstMesh, N> add_meshes(Scene& scene, const std::array<Kind, N>& kinds, std::uint32_t seed) {
+  std::array<FirstMesh, N> first{};
   for (std::size_t k = 0; k < N; ++k) {
-    first[k] = static_cast<int>(scene.meshes.size());
-    for (int variant = 0; variant < kinds[k].variants; ++variant) {
-      Mesh mesh = kinds[k].make(seed * 977U + static_cast<std::uint32_t>(variant));
-      mesh.name = fmt::format("forest_{}_{}", mesh.name, variant);
-      scene.meshes.push_back(std::move(mesh));
+    const int begin = static_cast<int>(scene.meshes.size());
+    first[k] = {begin, begin + kinds[k].variants};
+    for (const forest::Detail detail : {forest::Detail::near, forest::Detail::far}) {
+      for (int variant = 0; variant < kinds[k].variants; ++variant) {
+        Mesh mesh = kinds[k].make(seed * 977U + static_cast<std::uint32_t>(variant), detail);
+        mesh.name = fmt::format("forest_{}_{}_{}", mesh.name, variant, detail == forest::Detail::near ? "near" : "far");
+        scene.meshes.push_back(std::move(mesh));
+      }
     }
   }
   return first;
@@ -195,18 +204,19 @@ void add_forest(Scene& scene, const ForestOptions& options) {
   scene.meshes.push_back(make_ground(options));
   scene.instances.push_back({"ground", ground_mesh, ground_material, glm::mat4(1.0F), glm::vec3(1.0F)});
 
-  const auto add_plant = [&](std::string name, const Kind& kind, int first_mesh, const glm::vec2& place, float sink,
-                             float max_lean, Random& random) {
+  const auto add_plant = [&](std::string name, const Kind& kind, const FirstMesh& meshes, const glm::vec2& place,
+                             float sink, float max_lean, Random& random) {
+    const bool near = glm::distance(place, options.clearing) < options.clearing_radius + kNear_m;
     const float scale = random.range(kind.min_scale, kind.max_scale);
     const glm::vec3 girth{scale * random.range(0.88F, 1.12F), scale, scale * random.range(0.88F, 1.12F)};
     const float turn = random.range(0.0F, kTurn), lean = random.range(-max_lean, max_lean);
     const float light = random.range(0.75F, 1.2F), warmth = random.range(-0.12F, 0.12F);
-    scene.instances.push_back({std::move(name), first_mesh + random.below(kind.variants), ground_material + 1,
-                               plant(options, place, sink, turn, lean, girth),
+    scene.instances.push_back({std::move(name), (near ? meshes.near : meshes.far) + random.below(kind.variants),
+                               ground_material + 1, plant(options, place, sink, turn, lean, girth),
                                light * glm::vec3(1.0F + warmth, 1.0F, 1.0F - warmth)});
   };
 
-  const std::array<int, kTrees.size()> tree_meshes = add_meshes(scene, kTrees, options.seed);
+  const std::array<FirstMesh, kTrees.size()> tree_meshes = add_meshes(scene, kTrees, options.seed);
   Random kinds(options.seed, kKinds);
   int number = 0;
   for (const glm::vec2& place : tree_places(options)) {
@@ -216,7 +226,7 @@ void add_forest(Scene& scene, const ForestOptions& options) {
     add_plant(fmt::format("tree_{}", number++), kTrees[kind], tree_meshes[kind], place, 0.05F, 0.05F, kinds);
   }
 
-  const std::array<int, kUnderTrees.size()> under_meshes = add_meshes(scene, kUnderTrees, options.seed);
+  const std::array<FirstMesh, kUnderTrees.size()> under_meshes = add_meshes(scene, kUnderTrees, options.seed);
   Random random(options.seed, kUndergrowth);
   const int plants = static_cast<int>(options.undergrowth * static_cast<float>(options.trees));
   for (int i = 0; i < plants; ++i) {

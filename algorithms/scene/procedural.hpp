@@ -20,8 +20,9 @@ Mesh make_torus(float major_radius, float minor_radius, int segments);
 /// towards +x; the body's radius is `scale`, the height 1.575·scale. Lid, body, handle and spout are separate shells.
 Mesh make_teapot(float scale, int subdivisions);
 
-/// A ground with relief and many trees of a few kinds, each kind one mesh that is instanced. Appends meshes, materials
-/// and instances to `scene`. Instances are called ground, tree_0 … and undergrowth_0 …
+/// A ground with relief and many trees of a few kinds, each kind a few meshes that are instanced, finer near the
+/// clearing. Appends meshes, materials and instances to `scene`. Instances are called ground, tree_0 … and
+/// undergrowth_0 …
 struct ForestOptions {
   glm::vec2 extent{60.0F};  ///< of the ground, centred
   int trees = 300;
