@@ -1,10 +1,16 @@
 #include "algorithms/scene/hash.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nettle/sha2.h>
+
+#include "gl/error.hpp"
 
 namespace pellucid {
 
@@ -50,6 +56,19 @@ std::string sha256_hex(std::span<const std::byte> bytes) {
 
 std::string sha256_hex(std::string_view text) {
   return sha256_hex(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+std::string sha256_file(const std::filesystem::path& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  Sha256::State state;
+  std::vector<char> block(std::size_t{1} << 16);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    state.update(std::as_bytes(std::span(block.data(), static_cast<std::size_t>(file.gcount()))));
+  }
+  if (!file.eof()) throw InputError(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
+  return state.hex();
 }
 
 }  // namespace pellucid

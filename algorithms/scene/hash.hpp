@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,8 @@ namespace pellucid {
 /// SHA-256 as 64 hexadecimal digits.
 std::string sha256_hex(std::span<const std::byte>);
 std::string sha256_hex(std::string_view text);
+/// Of a file's content. Throws InputError when it cannot be read.
+std::string sha256_file(const std::filesystem::path&);
 
 /// SHA-256 of several pieces. add() puts each piece's length before it, so that ("ab", "c") and ("a", "bc") differ.
 class Sha256 {
@@ -27,6 +30,7 @@ class Sha256 {
 
  private:
   friend std::string sha256_hex(std::span<const std::byte>);
+  friend std::string sha256_file(const std::filesystem::path&);
   struct State;
   std::unique_ptr<State> state_;
 };

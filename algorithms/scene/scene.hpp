@@ -3,14 +3,15 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/image.hpp"
@@ -64,14 +65,15 @@ struct Volume {
   glm::ivec3 size{1};
   std::vector<float> density;  ///< x fastest; ≥ 0, finite
   glm::mat4 to_world{1.0F};
-  float extinction = 1.0F;                ///< φ [1/m] at density 1
-  glm::vec3 albedo{1.0F};                 ///< single-scattering albedo
-  glm::vec3 emission{0.0F};               ///< radiance added to the scattered one
+  float extinction = 1.0F;   ///< φ [1/m] at density 1
+  glm::vec3 albedo{1.0F};    ///< single-scattering albedo
+  glm::vec3 emission{0.0F};  ///< radiance added to the scattered one
 
   glm::vec3 voxel_spacing_m() const;  ///< edge length of a voxel along each axis, in the world
 };
 
-/// Radiance from everywhere: a lat-long image (row 0 at +y, u = 1/2 at −z) times `scale`, or a vertical gradient.
+/// Radiance from everywhere, times `scale`: a lat-long image (row 0 at +y; u = 1/2 at −z, 3/4 at +x; bilinear), or a
+/// gradient, linear in direction.y from the horizon up to the zenith and down to the ground.
 struct Environment {
   std::optional<Image> image;
   float scale = 1.0F;
@@ -105,7 +107,8 @@ struct Camera {
 class SceneSource;
 
 /// A scene file, loaded. `parameters()` exposes the scene's own parameters (without the prefix `scene.`); assigning one
-/// changes the data below in place and raises `revision`.
+/// changes the data below in place and raises `revision`. A ParameterRef holds the scene's address: take it again after
+/// a move.
 class Scene {
  public:
   std::string name;

@@ -1,0 +1,290 @@
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "algorithms/scene/procedural.hpp"
+#include "algorithms/scene/scene_description.hpp"
+
+namespace pellucid {
+
+namespace {
+
+int whole(double value) {
+  return static_cast<int>(std::lround(value));
+}
+
+[[noreturn]] void contradict(const SceneDescription& scene, Place place, std::string_view message) {
+  throw scene.file.error(place, message);
+}
+
+// ---- geometry ----
+
+Mesh make_shape(const SceneDescription& scene, const MeshDescription& mesh) {
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const int segments = whole(mesh.segments);
+  switch (mesh.kind) {
+    case MeshKind::sphere:
+      return make_sphere(f(mesh.radius), segments);
+    case MeshKind::box:
+      return make_box(glm::vec3(mesh.size));
+    case MeshKind::plane:
+      return make_plane(glm::vec2(mesh.plane_size), segments);
+    case MeshKind::cylinder:
+      return make_cylinder(f(mesh.radius), f(mesh.height), segments);
+    case MeshKind::cone:
+      return make_cone(f(mesh.radius), f(mesh.height), segments);
+    case MeshKind::torus:
+      if (!(mesh.minor_radius < mesh.radius)) {
+        contradict(scene, mesh.place,
+                   fmt::format("meshes.{}: minor_radius {} must be below radius {}", mesh.name, mesh.minor_radius,
+                               mesh.radius));
+      }
+      return make_torus(f(mesh.radius), f(mesh.minor_radius), segments);
+    case MeshKind::teapot:
+      return make_teapot(f(mesh.scale), segments);
+    case MeshKind::file:
+      break;
+  }
+  return {};
+}
+
+void evaluate_mesh(SceneDescription& description, std::size_t i, Scene& scene) {
+  MeshDescription& mesh = description.meshes[i];
+  if (mesh.kind == MeshKind::file) {
+    if (mesh.from_file) scene.meshes[i] = std::move(*mesh.from_file);
+    mesh.from_file.reset();
+  } else {
+    scene.meshes[i] = make_shape(description, mesh);
+  }
+  scene.meshes[i].name = mesh.name;
+}
+
+template <class Things>
+void check_distinct(const SceneDescription& description, const Things& things, std::string_view kind) {
+  std::set<std::string_view> names;
+  for (const auto& thing : things) {
+    if (!names.insert(thing.name).second) {
+      contradict(description, description.forest->place,
+                 fmt::format("the forest makes a {} '{}', a name that the scene uses too", kind, thing.name));
+    }
+  }
+}
+
+/// The forest comes behind what the file declares, so the latter's indices never change.
+void evaluate_forest(const SceneDescription& description, Scene& scene) {
+  const ForestDescription& forest = *description.forest;
+  scene.meshes.resize(description.meshes.size());
+  scene.materials.resize(description.materials.size());
+  scene.instances.resize(description.instances.size());
+  ForestOptions options;
+  options.extent = glm::vec2(forest.extent);
+  options.trees = whole(forest.trees);
+  options.clearing_radius = static_cast<float>(forest.clearing_radius);
+  options.clearing = glm::vec2(forest.clearing);
+  options.relief_m = static_cast<float>(forest.relief_m);
+  options.seed = static_cast<std::uint32_t>(forest.seed);
+  add_forest(scene, options);
+  check_distinct(description, scene.meshes, "mesh");
+  check_distinct(description, scene.materials, "material");
+}
+
+glm::dmat3 turn(const SceneDescription& scene, const Placement& placement, Place place, double time_s) {
+  if (glm::length(placement.rotation_axis) < 1e-9) contradict(scene, place, "rotation_axis must not be zero");
+  const glm::dmat3 turned = rotation(placement.rotation_axis, placement.rotation_deg);
+  return placement.spin ? placement.spin->at(time_s) * turned : turned;
+}
+
+glm::dvec3 position_at(const glm::dvec3& position, const std::optional<MotionPath>& path, double time_s) {
+  return path ? path->at(time_s) : position;
+}
+
+void evaluate_instance(const SceneDescription& description, std::size_t i, double time_s, Scene& scene) {
+  const InstanceDescription& from = description.instances[i];
+  glm::dmat3 axes = turn(description, from.placement, from.place, time_s);
+  for (int c = 0; c < 3; ++c)
+    axes[c] *= from.scale[c];
+  glm::dmat4 to_world(axes);
+  to_world[3] = glm::dvec4(position_at(from.placement.position, from.placement.position_path, time_s), 1.0);
+  scene.instances[i] = {from.name, from.mesh, from.material, glm::mat4(to_world), glm::vec3(from.tint)};
+}
+
+// ---- lights and views ----
+
+void evaluate_light(const SceneDescription& description, std::size_t i, double time_s, Scene& scene) {
+  const LightDescription& from = description.lights[i];
+  glm::dvec3 direction = from.direction;
+  if (from.by_angles) {
+    // Where the light comes from: the azimuth turns from −z to +x, the elevation lifts towards +y.
+    const double azimuth = glm::radians(from.azimuth_deg);
+    const double elevation = glm::radians(from.elevation_deg);
+    direction = -glm::dvec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                            -std::cos(elevation) * std::cos(azimuth));
+  }
+  if (glm::length(direction) < 1e-9) {
+    contradict(description, from.place, fmt::format("lights.{}: direction must not be zero", from.name));
+  }
+  direction = glm::normalize(direction);
+  if (from.spin) direction = from.spin->at(time_s) * direction;
+  if (from.kind == LightKind::spot && !(from.inner_angle_deg < from.outer_angle_deg)) {
+    contradict(description, from.place,
+               fmt::format("lights.{}: inner_angle_deg {} must be below outer_angle_deg {}", from.name,
+                           from.inner_angle_deg, from.outer_angle_deg));
+  }
+  scene.lights[i] = {from.name,
+                     from.kind,
+                     glm::vec3(position_at(from.position, from.position_path, time_s)),
+                     glm::vec3(direction),
+                     glm::vec3(from.intensity),
+                     static_cast<float>(from.inner_angle_deg),
+                     static_cast<float>(from.outer_angle_deg)};
+}
+
+void evaluate_view(const SceneDescription& description, std::size_t i, double time_s, Scene& scene) {
+  const ViewDescription& from = description.views[i];
+  const auto refuse = [&](std::string_view message) {
+    contradict(description, from.place, fmt::format("views.{}: {}", from.name, message));
+  };
+  const glm::dvec3 target = position_at(from.target, from.target_path, time_s);
+  glm::dvec3 eye = position_at(from.eye, from.eye_path, time_s);
+  if (from.spin) eye = target + from.spin->at(time_s) * (eye - target);
+  if (!(from.near_m < from.far_m)) {
+    refuse(fmt::format("near_m {} must be below far_m {}", from.near_m, from.far_m));
+  }
+  const double distance = glm::length(target - eye);
+  if (!(distance > 1e-6)) refuse("eye and target are the same point");
+  const double up_length = glm::length(from.up);
+  if (!(up_length > 1e-9)) refuse("up must not be zero");
+  const double sine = glm::length(glm::cross((target - eye) / distance, from.up / up_length));
+  if (!(sine > 1e-6)) refuse("up is parallel to the line of sight");
+  scene.views[i] = {from.name,
+                    glm::vec3(eye),
+                    glm::vec3(target),
+                    glm::vec3(from.up),
+                    static_cast<float>(from.fov_y_deg),
+                    static_cast<float>(from.near_m),
+                    static_cast<float>(from.far_m)};
+}
+
+// ---- the medium ----
+
+void evaluate_voxels(const SceneDescription& description, Scene& scene) {
+  const VolumeDescription& from = *description.volume;
+  const double count = from.voxels.x * from.voxels.y * from.voxels.z;
+  constexpr double kMaxVoxels = 1 << 30;
+  if (count > kMaxVoxels) {
+    contradict(description, from.place,
+               fmt::format("volume: {} x {} x {} voxels; at most 2^30 are allowed", from.voxels.x, from.voxels.y,
+                           from.voxels.z));
+  }
+  Volume& volume = *scene.volume;
+  volume.name = from.name;
+  volume.size = glm::ivec3(whole(from.voxels.x), whole(from.voxels.y), whole(from.voxels.z));
+  const auto density = static_cast<float>(from.density);
+  if (from.kind == VolumeKind::constant) {
+    volume.density = make_constant_density(volume.size, density);
+    return;
+  }
+  if (from.kind == VolumeKind::ball) {
+    volume.density = make_ball_density(volume.size);
+  } else {
+    FogOptions options;
+    options.seed = static_cast<std::uint32_t>(from.seed);
+    options.octaves = whole(from.octaves);
+    options.frequency = static_cast<float>(from.frequency);
+    options.height_falloff = static_cast<float>(from.height_falloff);
+    options.contrast = static_cast<float>(from.contrast);
+    volume.density = make_fog_density(volume.size, options);
+  }
+  if (density == 1.0F) return;
+  for (float& d : volume.density)
+    d *= density;
+}
+
+void evaluate_medium(const SceneDescription& description, double time_s, Scene& scene) {
+  const VolumeDescription& from = *description.volume;
+  Volume& volume = *scene.volume;
+  glm::dmat3 edges(1.0);
+  glm::dvec3 corner = from.min;
+  if (from.by_corners) {
+    const glm::dvec3 size = from.max - from.min;
+    if (!(size.x > 0 && size.y > 0 && size.z > 0)) {
+      contradict(description, from.place, "volume: min must be below max along every axis");
+    }
+    for (int c = 0; c < 3; ++c)
+      edges[c] *= size[c];
+  } else {
+    edges = turn(description, from.placement, from.place, time_s);
+    for (int c = 0; c < 3; ++c)
+      edges[c] *= from.size[c];
+    corner = position_at(from.placement.position, from.placement.position_path, time_s) - edges * glm::dvec3(0.5);
+  }
+  glm::dmat4 to_world(edges);
+  to_world[3] = glm::dvec4(corner, 1.0);
+  volume.to_world = glm::mat4(to_world);
+  volume.extinction = static_cast<float>(from.extinction);
+  volume.albedo = glm::vec3(from.albedo);
+  volume.emission = glm::vec3(from.emission);
+}
+
+void evaluate_environment(SceneDescription& description, Scene& scene) {
+  EnvironmentDescription& from = description.environment;
+  if (from.image) scene.environment.image = std::move(*from.image);
+  from.image.reset();
+  scene.environment.scale = static_cast<float>(from.scale);
+  scene.environment.zenith = glm::vec3(from.zenith);
+  scene.environment.horizon = glm::vec3(from.horizon);
+  scene.environment.ground = glm::vec3(from.ground);
+}
+
+}  // namespace
+
+std::vector<Affected> all_parts(const SceneDescription& description) {
+  std::vector<Affected> parts;
+  const auto add = [&](Part part, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      parts.push_back({part, i});
+  };
+  add(Part::mesh, description.meshes.size());
+  add(Part::forest, description.forest ? 1 : 0);
+  add(Part::material, description.materials.size());
+  add(Part::instance, description.instances.size());
+  add(Part::light, description.lights.size());
+  add(Part::view, description.views.size());
+  add(Part::voxels, description.volume ? 1 : 0);
+  add(Part::medium, description.volume ? 1 : 0);
+  add(Part::environment, 1);
+  add(Part::ambient, 1);
+  return parts;
+}
+
+void evaluate(SceneDescription& description, Affected what, double time_s, Scene& scene) {
+  switch (what.part) {
+    case Part::mesh:
+      return evaluate_mesh(description, what.index, scene);
+    case Part::forest:
+      return evaluate_forest(description, scene);
+    case Part::material: {
+      const MaterialDescription& from = description.materials[what.index];
+      scene.materials[what.index] = {from.name, glm::vec3(from.albedo), glm::vec3(from.emission)};
+      return;
+    }
+    case Part::instance:
+      return evaluate_instance(description, what.index, time_s, scene);
+    case Part::light:
+      return evaluate_light(description, what.index, time_s, scene);
+    case Part::view:
+      return evaluate_view(description, what.index, time_s, scene);
+    case Part::voxels:
+      return evaluate_voxels(description, scene);
+    case Part::medium:
+      return evaluate_medium(description, time_s, scene);
+    case Part::environment:
+      return evaluate_environment(description, scene);
+    case Part::ambient:
+      scene.ambient = glm::vec3(description.ambient);
+      return;
+  }
+}
+
+}  // namespace pellucid

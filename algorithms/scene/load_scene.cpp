@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "algorithms/scene/scene.hpp"
+#include "algorithms/scene/scene_source.hpp"
+#include "gl/resources.hpp"
+
+namespace pellucid {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uintmax_t kMaxSceneBytes = std::uintmax_t{1} << 24;
+
+std::vector<std::string> scene_resources() {
+  std::vector<std::string> names = list_resources("algorithms/", ".toml");
+  std::erase_if(names, [](const std::string& name) { return fs::path(name).parent_path().filename() != "scenes"; });
+  return names;
+}
+
+std::string read_scene_file(const std::string& name) {
+  const fs::path path(name);
+  std::error_code error;
+  const auto refuse = [&](std::string_view reason) {
+    return InputError(fmt::format("cannot read scene '{}': {}", name, reason));
+  };
+  if (!fs::is_regular_file(path, error)) {
+    throw refuse(fs::exists(path, error) ? "not a regular file" : "No such file or directory");
+  }
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (!error && bytes > kMaxSceneBytes) {
+    throw refuse(fmt::format("{} bytes; a scene file has at most {}", bytes, kMaxSceneBytes));
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.is_open() || file.bad()) throw refuse(std::strerror(errno));
+  return text;
+}
+
+/// The resource of the scene called `name`.
+std::string find_scene(const std::string& name) {
+  std::vector<std::string> known;
+  for (const std::string& resource : scene_resources()) {
+    known.push_back(fs::path(resource).stem().string());
+    if (known.back() == name) return resource;
+  }
+  const std::string near = nearest_name(name, known);
+  throw InputError(fmt::format(
+      "unknown scene '{}'; {}, or name a file that ends in .toml", name,
+      near.empty() ? fmt::format("there are {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near)));
+}
+
+}  // namespace
+
+std::vector<SceneInfo> list_scenes() {
+  std::vector<SceneInfo> scenes;
+  for (const std::string& resource : scene_resources()) {
+    const fs::path path(resource);
+    SceneInfo& info = scenes.emplace_back();
+    info.name = path.stem().string();
+    info.module = path.parent_path().parent_path().filename().string();
+    try {
+      const toml::table document = toml::parse(find_resource(resource).value_or(""), resource);
+      info.title = document["title"].value_or(std::string());
+      info.description = document["description"].value_or(std::string());
+    } catch (const toml::parse_error& error) {
+      const toml::source_position at = error.source().begin;
+      throw InputError(fmt::format("{}:{}:{}: {}", resource, at.line, at.column, error.description()));
+    }
+  }
+  return scenes;
+}
+
+Scene load_scene(const std::string& name_or_path) {
+  auto description = std::make_unique<SceneDescription>();
+  std::string text;
+  fs::path folder;
+  if (name_or_path.ends_with(".toml")) {
+    description->file.shown = name_or_path;
+    text = read_scene_file(name_or_path);
+    folder = fs::path(name_or_path).parent_path();
+  } else {
+    description->file.shown = find_scene(name_or_path);
+    text = find_resource(description->file.shown).value_or("");
+    folder = (fs::path(PELLUCID_SOURCE_DIR) / description->file.shown).parent_path();
+  }
+  const std::string name = fs::path(description->file.shown).stem().string();
+  parse_scene(text, folder, *description);
+  Scene scene;
+  scene.name = name;
+  scene.source = std::make_shared<SceneSource>(std::move(description), std::move(text));
+  scene.source->evaluate_all(scene);
+  return scene;
+}
+
+}  // namespace pellucid

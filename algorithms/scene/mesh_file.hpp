@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "algorithms/scene/scene.hpp"
+
+namespace pellucid {
+
+inline constexpr std::size_t kMaxTriangles = 50'000'000;
+
+struct MeshFile {
+  Mesh mesh;
+  std::vector<std::filesystem::path> files;  ///< the file and those it refers to (a glTF's buffers), in order of use
+};
+
+/// Reads OBJ, PLY, OFF or glTF: all its triangles as one mesh, node transforms applied, materials left aside. A file
+/// without normals gets them, smoothed where faces meet at less than `crease_deg`. Throws InputError: missing, empty,
+/// malformed, or more than kMaxTriangles.
+MeshFile load_mesh_file(const std::filesystem::path&, double crease_deg);
+
+/// Scales the mesh so that its longest side is `size_m`, and centres its bounds on the origin.
+void fit_mesh(Mesh&, double size_m);
+
+}  // namespace pellucid

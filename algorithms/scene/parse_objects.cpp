@@ -1,0 +1,156 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "algorithms/scene/hash.hpp"
+#include "algorithms/scene/mesh_file.hpp"
+#include "algorithms/scene/scene_description.hpp"
+
+/// Materials, meshes, instances and the forest.
+namespace pellucid {
+
+namespace {
+
+constexpr NumberRange kSegments{3, 2048};
+
+/// The position of `key`'s text among `things`, by name.
+template <class Things>
+int find_named(TableReader& reader, std::string_view key, const Things& things, std::string_view kind) {
+  std::string name;
+  reader.text(key, name, Need::required);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (things[i].name == name) return static_cast<int>(i);
+    names.push_back(things[i].name);
+  }
+  const std::string near = nearest_name(name, names);
+  reader.fail(key, fmt::format("there is no {} '{}'{}", kind, name,
+                               !near.empty()   ? fmt::format("; did you mean '{}'?", near)
+                               : names.empty() ? ""
+                                               : fmt::format("; there are {}", fmt::join(names, ", "))));
+}
+
+void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, MeshDescription& mesh,
+                     SceneDescription& scene) {
+  reader.set_affected(std::nullopt);
+  double crease_deg = 60;
+  double fit_m = 0;
+  reader.number("crease_deg", crease_deg, {0, 180});
+  reader.number("fit_m", fit_m, kLength);
+  const std::filesystem::path path = parse_file_name(reader, "file", folder, scene);
+  located(reader, "file", [&] {
+    MeshFile file = load_mesh_file(path, crease_deg);
+    // Assimp may look into the file itself first; what it refers to counts as well.
+    for (const std::filesystem::path& other : file.files) {
+      if (other != path) scene.files_read.emplace_back(other.filename().string(), sha256_file(other));
+    }
+    if (fit_m > 0) fit_mesh(file.mesh, fit_m);
+    mesh.from_file = std::move(file.mesh);
+  });
+}
+
+void parse_shape(TableReader& reader, MeshDescription& mesh) {
+  reader.require("shape");
+  static constexpr MeshKind kKinds[] = {MeshKind::sphere, MeshKind::box,   MeshKind::plane, MeshKind::cylinder,
+                                        MeshKind::cone,   MeshKind::torus, MeshKind::teapot};
+  mesh.kind = kKinds[reader.choice("shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "teapot"}, 0)];
+  switch (mesh.kind) {
+    case MeshKind::sphere:
+      reader.number("radius", mesh.radius, kLength);
+      reader.integer("segments", mesh.segments, kSegments);
+      break;
+    case MeshKind::box:
+      reader.extent("size", mesh.size, kLength, false);
+      break;
+    case MeshKind::plane:
+      mesh.segments = 1;
+      reader.vector("size", mesh.plane_size, kLength);
+      reader.integer("segments", mesh.segments, {1, kSegments.max});
+      break;
+    case MeshKind::cylinder:
+    case MeshKind::cone:
+      reader.number("radius", mesh.radius, kLength);
+      reader.number("height", mesh.height, kLength);
+      reader.integer("segments", mesh.segments, kSegments);
+      break;
+    case MeshKind::torus:
+      reader.number("radius", mesh.radius, kLength);
+      reader.number("minor_radius", mesh.minor_radius, kLength);
+      reader.integer("segments", mesh.segments, kSegments);
+      break;
+    case MeshKind::teapot:
+      mesh.segments = 8;
+      reader.number("scale", mesh.scale, kLength);
+      reader.integer("subdivisions", mesh.segments, {1, 256});
+      break;
+    case MeshKind::file:
+      break;
+  }
+}
+
+}  // namespace
+
+void parse_materials(TableReader& root, SceneDescription& scene) {
+  for (auto& [name, reader] : root.named_tables("materials")) {
+    reader.set_affected(Affected{Part::material, scene.materials.size()});
+    MaterialDescription& material = scene.materials.emplace_back();
+    material.name = name;
+    reader.color("albedo", material.albedo, kShare);
+    reader.color("emission", material.emission, kRadiance);
+    reader.finish();
+  }
+}
+
+void parse_meshes(TableReader& root, const std::filesystem::path& folder, SceneDescription& scene) {
+  for (auto& [name, reader] : root.named_tables("meshes")) {
+    reader.set_affected(Affected{Part::mesh, scene.meshes.size()});
+    MeshDescription& mesh = scene.meshes.emplace_back();
+    mesh.name = name;
+    mesh.place = reader.place();
+    reader.exclude("shape", "file");
+    if (reader.has("file")) {
+      mesh.kind = MeshKind::file;
+      parse_file_mesh(reader, folder, mesh, scene);
+    } else {
+      parse_shape(reader, mesh);
+    }
+    reader.finish();
+  }
+}
+
+void parse_instances(TableReader& root, SceneDescription& scene) {
+  for (auto& [name, reader] : root.named_tables("instances")) {
+    const Affected affected{Part::instance, scene.instances.size()};
+    reader.set_affected(affected);
+    InstanceDescription& instance = scene.instances.emplace_back();
+    instance.name = name;
+    instance.place = reader.place();
+    instance.mesh = find_named(reader, "mesh", scene.meshes, "mesh");
+    instance.material = find_named(reader, "material", scene.materials, "material");
+    parse_position(reader, "position", instance.placement.position, instance.placement.position_path, Need::optional);
+    reader.vector("rotation_axis", instance.placement.rotation_axis, kCoordinate);
+    reader.number("rotation_deg", instance.placement.rotation_deg, kAngleDeg);
+    instance.placement.spin = parse_spin(reader);
+    reader.extent("scale", instance.scale, kLength, false);
+    reader.color("tint", instance.tint, kShare);
+    reader.finish();
+    if (instance.placement.position_path || instance.placement.spin) scene.animated.push_back(affected);
+  }
+}
+
+void parse_forest(TableReader& root, SceneDescription& scene) {
+  std::optional<TableReader> reader = root.table("forest");
+  if (!reader) return;
+  reader->set_affected(Affected{Part::forest, 0});
+  ForestDescription& forest = scene.forest.emplace();
+  forest.place = reader->place();
+  reader->vector("extent", forest.extent, {1, 1e4});
+  reader->integer("trees", forest.trees, {0, 100000});
+  reader->vector("clearing", forest.clearing, kCoordinate);
+  reader->number("clearing_radius", forest.clearing_radius, {0, 1e4});
+  reader->number("relief_m", forest.relief_m, {0, 100});
+  reader->integer("seed", forest.seed, {0, 4294967295.0});
+  reader->finish();
+}
+
+}  // namespace pellucid

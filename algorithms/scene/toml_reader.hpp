@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "gl/error.hpp"
+
+namespace toml::inline v3 {
+class node;
+class table;
+}  // namespace toml::inline v3
+
+/// Reading a scene file key by key: each number is checked once, where it is read, and is from then on known by its
+/// dotted path to the scene's parameters. Every error is an InputError "file:line:column: message".
+namespace pellucid {
+
+/// A place in the scene file, 1-based.
+struct Place {
+  int line = 0;
+  int column = 0;
+};
+Place place_of(const toml::node&);
+
+/// The name of the scene file, as errors show it.
+struct SceneFile {
+  std::string shown;
+  InputError error(Place, std::string_view message) const;
+};
+
+/// Inclusive, unless `above_min`.
+struct NumberRange {
+  double min = 0;
+  double max = 0;
+  bool above_min = false;
+  bool contains(double v) const { return v <= max && (above_min ? v > min : v >= min); }
+  std::string text() const;
+};
+inline constexpr NumberRange kCoordinate{-1e6, 1e6};
+inline constexpr NumberRange kLength{1e-6, 1e6};
+inline constexpr NumberRange kShare{0, 1};
+inline constexpr NumberRange kRadiance{0, 1e9};
+inline constexpr NumberRange kAngleDeg{-36000, 36000};
+
+/// The parts of a scene that are evaluated separately, in this order.
+enum class Part { mesh, forest, material, instance, light, view, voxels, medium, environment, ambient };
+struct Affected {
+  Part part = Part::ambient;
+  std::size_t index = 0;
+  auto operator<=>(const Affected&) const = default;
+};
+
+/// Numbers of the description that a parameter may drive, under the dotted path that the file gives them.
+struct DriveTarget {
+  std::string path;
+  std::vector<double*> numbers;  ///< one, or all components of a vector
+  NumberRange range;
+  bool integer = false;
+  bool given = false;  ///< by the file, at `place`; else the default
+  Place place;
+  Affected affected;
+};
+
+enum class Need { optional, required };
+
+/// One table of the file. Keys that are never asked for are errors: call finish() at the end.
+class TableReader {
+ public:
+  TableReader(const SceneFile& file, const toml::table& table, std::string path, std::vector<DriveTarget>& targets)
+      : file_(&file), table_(&table), path_(std::move(path)), targets_(&targets) {}
+
+  /// What changes when a number read from now on changes; nothing: parameters cannot drive it.
+  void set_affected(std::optional<Affected> affected) { affected_ = affected; }
+
+  bool has(std::string_view key) const;
+  Place place() const { return place_of_table(); }
+  Place place(std::string_view key) const;  ///< of the key's value; of the table without it
+  const std::string& path() const { return path_; }
+
+  void number(std::string_view key, double& value, NumberRange, Need = Need::optional);
+  void integer(std::string_view key, double& value, NumberRange, Need = Need::optional);
+  /// [x, z]: on the ground.
+  void vector(std::string_view key, glm::dvec2& value, NumberRange, Need = Need::optional);
+  void vector(std::string_view key, glm::dvec3& value, NumberRange, Need = Need::optional);
+  /// [r, g, b], or one number for gray.
+  void color(std::string_view key, glm::dvec3& value, NumberRange, Need = Need::optional);
+  /// [x, y, z], or one number for all three.
+  void extent(std::string_view key, glm::dvec3& value, NumberRange, bool integers, Need = Need::optional);
+  /// [min, max]
+  void pair(std::string_view key, glm::dvec2& value, NumberRange, bool integers, Need = Need::optional);
+  void boolean(std::string_view key, bool& value);
+  void text(std::string_view key, std::string& value, Need = Need::optional);
+  /// A text that is one of `choices`; returns its position.
+  std::size_t choice(std::string_view key, std::initializer_list<std::string_view> choices, std::size_t otherwise);
+  std::vector<std::pair<std::string, Place>> texts(std::string_view key, Need);
+
+  std::optional<TableReader> table(std::string_view key);
+  /// The tables in a table, named, in the order of the file.
+  std::vector<std::pair<std::string, TableReader>> named_tables(std::string_view key);
+  std::vector<TableReader> tables(std::string_view key, Need);  ///< an array of tables
+
+  void require(std::string_view key);
+  /// Not both.
+  void exclude(std::string_view key, std::string_view other);
+  void finish();
+
+  [[noreturn]] void fail(Place, std::string_view message) const;
+  /// "path.key: message"
+  [[noreturn]] void fail(std::string_view key, std::string_view message) const;
+
+ private:
+  Place place_of_table() const;
+  std::string dotted(std::string_view key) const;
+  const toml::node* find(std::string_view key, Need);
+  double scalar(const toml::node&, const std::string& shown, NumberRange, bool integer) const;
+  void components(std::string_view key, double* values, std::size_t count, NumberRange, bool integer, bool one_for_all,
+                  std::string_view names, Need);
+  void add_target(std::string path, std::vector<double*> numbers, NumberRange, bool integer, const toml::node*);
+
+  const SceneFile* file_;
+  const toml::table* table_;
+  std::string path_;
+  std::vector<DriveTarget>* targets_;
+  std::optional<Affected> affected_;
+  std::vector<std::string> asked_;
+};
+
+/// Names of things in a scene: lower-case letters, digits and underscores, a letter first.
+bool is_name(std::string_view);
+
+}  // namespace pellucid
