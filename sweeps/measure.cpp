@@ -101,11 +101,17 @@ void Measurer::open_session(const Point& point) {
     session_.emplace(load_scene(point.scene), point.technique, point.view, point.size.width, point.size.height);
     session_key_ = key;
     prepare_s_ = 0;
+    assigned_.clear();
   }
-  // Only what differs: an assignment may cost a program or a precomputation.
+  // Only what differs: an assignment may cost a program or a precomputation. The session rounds reals to float, so what
+  // was assigned is remembered.
   const nlohmann::json current = session_->parameters();
   for (const auto& [name, value] : point.parameters) {
-    if (!current.contains(name) || !same(current.at(name), value)) session_->assign(name, value);
+    const auto before = assigned_.find(name);
+    const bool same = before != assigned_.end() ? before->second == value
+                                                : current.contains(name) && current.at(name) == value_to_json(value);
+    if (!same) session_->assign(name, value);
+    assigned_[name] = value;
   }
   const Camera& camera = session_->camera();
   if (camera.width != point.size.width || camera.height != point.size.height) {

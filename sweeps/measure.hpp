@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,7 @@ class Measurer {
   Progress progress_;
   std::string session_key_;
   std::optional<RenderSession> session_;
+  std::map<std::string, Value> assigned_;
   double prepare_s_ = 0;  // of the precomputation that is in the session now
   std::unique_ptr<ReferenceCache> references_;
 };

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <fstream>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -14,6 +15,14 @@ std::string utc_text(double unix_s) {
 
 double unix_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::vector<std::string> process_argv() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> argv;
+  for (std::string word; std::getline(file, word, '\0');)
+    argv.push_back(word);
+  return argv;
 }
 
 std::string shell_word(const std::string& text) {

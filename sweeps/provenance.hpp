@@ -15,6 +15,9 @@ std::string utc_text(double unix_s);
 /// Wall clock.
 double unix_now_s();
 
+/// The command line of this process.
+std::vector<std::string> process_argv();
+
 /// `text` as one word of a POSIX shell, quoted only where it must be.
 std::string shell_word(const std::string& text);
 std::string shell_line(const std::vector<std::string>& argv);

@@ -13,7 +13,7 @@ namespace pellucid::sweeps {
 
 struct RunOptions {
   std::optional<int> device;                        ///< `--device N` of the worker
-  std::vector<std::string> argv;                    ///< of this process, for the record
+  std::vector<std::string> argv;                    ///< for the record; empty: this process's own
   std::size_t limit = 0;                            ///< measure at most so many points, then stop; 0: all
   bool retry_failed = false;                        ///< measure points again that are recorded as failed
   bool quiet = false;                               ///< no progress on standard error

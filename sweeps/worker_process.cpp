@@ -96,6 +96,12 @@ WorkerProcess::~WorkerProcess() {
   close_file(errors_);
 }
 
+bool WorkerProcess::alive() const {
+  siginfo_t info{};
+  if (pid_ < 0 || ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0) return false;
+  return info.si_pid == 0;
+}
+
 bool WorkerProcess::send(const std::string& line) {
   const std::string text = line + "\n";
   for (std::size_t done = 0; done < text.size();) {

@@ -20,6 +20,8 @@ class WorkerProcess {
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
+  /// False when it has ended by itself.
+  bool alive() const;
   /// False when the child no longer reads.
   bool send(const std::string& line);
 
