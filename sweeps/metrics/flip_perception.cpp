@@ -1,7 +1,9 @@
 #include "sweeps/metrics/flip_perception.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include <tbb/blocked_range.h>
@@ -40,9 +42,22 @@ inline Vector relative_xyz(float r, float g, float b) {
   return out;
 }
 
+/// The cube root of t > 0: a third of the exponent and two Halley steps, exact to float. The library's takes four times
+/// as long and was a third of FLIP's whole time.
+inline float cube_root(float t) {
+  float y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(t) / 3 + 709921077u);
+  for (int i = 0; i < 2; ++i) {
+    const float cube = y * y * y;
+    y *= (cube + 2 * t) / (2 * cube + t);
+  }
+  return y;
+}
+
 inline float lab_curve(float t) {
   constexpr float kDelta = 6.0f / 29.0f;
-  return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0f / 29.0f;
+  constexpr float kLimit = kDelta * kDelta * kDelta;
+  const float root = cube_root(std::max(t, kLimit));
+  return t > kLimit ? root : t / (3 * kDelta * kDelta) + 4.0f / 29.0f;
 }
 
 /// L*, and a* and b* scaled by 0.01 L* (the Hunt effect: colours look less colourful in the dark).
@@ -58,8 +73,8 @@ inline float hyab(const Vector& p, const Vector& q) {
   return std::abs(p.v[0] - q.v[0]) + std::sqrt(da * da + db * db);
 }
 
-// q_c, p_c, p_t and q_f of the paper.
-constexpr float kColorExponent = 0.7f, kKnee = 0.4f, kKneeError = 0.95f, kFeatureExponent = 0.5f;
+// q_c, p_c and p_t of the paper; its q_f = 0.5 is a square root.
+constexpr float kColorExponent = 0.7f, kKnee = 0.4f, kKneeError = 0.95f;
 
 /// c_max: the largest distance in the Rec. 709 gamut is from green to blue.
 float largest_color_distance() {
@@ -249,8 +264,8 @@ void Perception::run(const LinearSource& linear, const std::function<void(int y,
                              static_cast<float>(kFromXyz[i][2]) * xyz[2],
                          0.0f, 1.0f);
         const Vector lab = hunt_lab(rgb[0], rgb[1], rgb[2]);
-        const float edge = std::hypot(result(kEx)[x], result(kEy)[x]);
-        const float point = std::hypot(result(kPx)[x], result(kPy)[x]);
+        const float edge = std::sqrt(result(kEx)[x] * result(kEx)[x] + result(kEy)[x] * result(kEy)[x]);
+        const float point = std::sqrt(result(kPx)[x] * result(kPx)[x] + result(kPy)[x] * result(kPy)[x]);
         result(kFy)[x] = lab.v[0];
         result(kFcx)[x] = lab.v[1];
         result(kFcz)[x] = lab.v[2];
@@ -278,16 +293,10 @@ void combine(const Row& reference, const Row& test, int width, float* error) {
     const float edge = std::abs(reference[kEdge][x] - test[kEdge][x]);
     const float point = std::abs(reference[kPoint][x] - test[kPoint][x]);
     const float strength = std::min(std::max(edge, point) * std::numbers::sqrt2_v<float> / 2, 1.0f);
-    const float feature_error = std::pow(strength, kFeatureExponent);
+    const float feature_error = std::sqrt(strength);
     // Delta E = Delta E_c ^ (1 - Delta E_f)
     error[x] = std::min(std::pow(color_error, 1 - feature_error), 1.0f);
   }
-}
-
-float aces(float x) {
-  constexpr auto k = [](std::size_t i) { return static_cast<float>(kAces[i]); };
-  x = std::min(x, 1e4f);  // far beyond where the curve reaches 1, and its square does not overflow
-  return std::clamp((k(0) * x * x + k(1) * x + k(2)) / (k(3) * x * x + k(4) * x + k(5)), 0.0f, 1.0f);
 }
 
 }  // namespace pellucid::sweeps::flip

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -56,6 +58,10 @@ void combine(const Row& reference, const Row& test, int width, float* error);
 /// The ACES curve of HDR-FLIP, the pre-exposure of its published fit undone: (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x +
 /// k5), clamped to [0, 1]; x >= 0.
 inline constexpr std::array<double, 6> kAces = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0, 0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
-float aces(float x);
+inline float aces(float x) {
+  constexpr auto k = [](std::size_t i) { return static_cast<float>(kAces[i]); };
+  x = std::min(x, 1e4f);  // far beyond where the curve reaches 1, and its square does not overflow
+  return std::min((k(0) * x * x + k(1) * x + k(2)) / (k(3) * x * x + k(4) * x + k(5)), 1.0f);
+}
 
 }  // namespace pellucid::sweeps::flip
