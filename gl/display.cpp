@@ -192,11 +192,11 @@ void DisplayTransform::draw(const Texture& source, float exposure_ev) const {
 }
 
 const std::string& DisplayTransform::display() const {
-  return state_->display;
+  return state_ ? state_->display : kNone;
 }
 
 const std::string& DisplayTransform::view() const {
-  return state_->view;
+  return state_ ? state_->view : kNone;
 }
 
 std::vector<std::pair<std::string, std::string>> DisplayTransform::views() const {

@@ -1,0 +1,6 @@
+flat in float value;
+layout(location = 0) out float color;
+
+void main() {
+  color = value;
+}
