@@ -1,0 +1,274 @@
+// pellucid sweep run, sweep status, results, table, plot: one small sweep from its spec to its curves.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace pellucid::test {
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+/// A spec of four points and their reference, with timing as short as it can be.
+std::string small_spec(const std::string& scene, const std::string& hulls = "[1, 2, 4]") {
+  return R"(name = "small"
+title = "A small sweep"
+metrics = ["rmse", "flip"]
+timeout_s = 60
+
+[timing]
+min_samples = 5
+max_samples = 5
+max_seconds = 2
+
+[reference]
+tolerance = 1e-3
+
+[[run]]
+name = "hulls"
+techniques = ["sampling_hulls"]
+scenes = [")" +
+         scene + R"("]
+sizes = ["48x36"]
+
+[run.axes]
+hulls = )" +
+         hulls + R"(
+
+[run.fixed]
+samples = 2
+
+[[run]]
+name = "slices"
+techniques = ["volume_slices"]
+scenes = [")" +
+         scene + R"("]
+sizes = ["48x36"]
+baseline = true
+
+[run.fixed]
+slices = 8
+)";
+}
+
+class Sweep : public testing::Test {
+ protected:
+  Folder folder;
+  std::string scene = write_small_scene(folder).string();
+  std::string spec = write_file(folder / "small.toml", small_spec(scene)).string();
+  std::string store = (folder / "small.db").string();
+
+  Outcome sweep(const Words& more = {}) const {
+    Words words{"sweep", "run", spec, "--store", store};
+    words.insert(words.end(), more.begin(), more.end());
+    return pellucid(words);
+  }
+  json rows() const {
+    const Outcome outcome = pellucid({"results", store, "--format", "json"});
+    EXPECT_TRUE(succeeded(outcome));
+    return outcome.status == 0 ? json::parse(outcome.out) : json::array();
+  }
+};
+
+TEST_F(Sweep, MeasuresEveryPointOnceAndKeepsTheRows) {
+  ASSERT_TRUE(succeeded(sweep()));
+  const json first = rows();
+  ASSERT_EQ(first.size(), 4U);
+  std::set<int> hulls;
+  for (const json& row : first) {
+    EXPECT_EQ(row.at("status"), "ok");
+    EXPECT_EQ(row.at("sweep"), "small");
+    EXPECT_EQ(row.at("width"), 48);
+    EXPECT_GT(row.at("frame_ms_median").get<double>(), 0);
+    EXPECT_LE(row.at("frame_ms_ci95_low").get<double>(), row.at("frame_ms_median").get<double>());
+    EXPECT_GE(row.at("frame_ms_ci95_high").get<double>(), row.at("frame_ms_median").get<double>());
+    EXPECT_NEAR(row.at("fps").get<double>() * row.at("frame_ms_median").get<double>(), 1000.0, 1e-6);
+    EXPECT_GE(row.at("rmse").get<double>(), 0);
+    EXPECT_GE(row.at("flip_mean").get<double>(), 0);
+    EXPECT_LE(row.at("flip_mean").get<double>(), 1);
+    EXPECT_GT(row.at("peak_rss_bytes").get<double>(), 0);
+    for (const char* field : {"point", "device", "driver", "commit", "scene_hash", "shader_hash", "clock", "repeat"})
+      EXPECT_FALSE(row.at(field).get<std::string>().empty()) << field;
+    if (row.at("technique") == "sampling_hulls") hulls.insert(row.at("hulls").get<int>());
+  }
+  EXPECT_EQ(hulls, (std::set<int>{1, 2, 4}));
+
+  const Outcome again = sweep();
+  ASSERT_TRUE(succeeded(again));
+  EXPECT_EQ(rows(), first);
+}
+
+TEST_F(Sweep, ARowSaysHowToRepeatItself) {
+  ASSERT_TRUE(succeeded(sweep()));
+  std::string repeat = rows().front().at("repeat").get<std::string>();
+  ASSERT_TRUE(repeat.starts_with("pellucid ")) << repeat;
+  repeat.replace(0, std::string("pellucid").size(), "'" PELLUCID_PROGRAM "'");
+  EXPECT_TRUE(succeeded(run({"sh", "-c", repeat}, {.folder = folder.path()}))) << repeat;
+}
+
+TEST_F(Sweep, ADryRunMeasuresNothing) {
+  const Outcome outcome = sweep({"--dry-run"});
+  ASSERT_TRUE(succeeded(outcome));
+  EXPECT_NE((outcome.out + outcome.err).find("4"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(store));
+}
+
+TEST_F(Sweep, StatusCountsWhatIsDone) {
+  ASSERT_TRUE(succeeded(sweep()));
+  const Outcome plain = pellucid({"sweep", "status", store});
+  ASSERT_TRUE(succeeded(plain));
+  EXPECT_NE(plain.out.find("small"), std::string::npos);
+  const Outcome counted = pellucid({"sweep", "status", store, "--json"});
+  ASSERT_TRUE(succeeded(counted));
+  EXPECT_FALSE(json::parse(counted.out).empty());
+}
+
+TEST_F(Sweep, AKilledSweepResumesAndKeepsWhatItHad) {
+  spec = write_file(folder / "small.toml", small_spec(scene, "{ from = 1, to = 12, steps = 12 }")).string();
+  {
+    Background running({PELLUCID_PROGRAM, "sweep", "run", spec, "--store", store});
+    // Until a row is there, or it is over.
+    std::size_t kept = 0;
+    while (kept == 0 && running.running()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      const Outcome outcome = pellucid({"results", store, "--format", "json"});
+      if (outcome.status == 0) kept = json::parse(outcome.out).size();
+    }
+    running.stop(SIGKILL);
+  }
+  const json before = rows();
+  ASSERT_GT(before.size(), 0U);
+  ASSERT_TRUE(succeeded(sweep()));
+  const json after = rows();
+  EXPECT_EQ(after.size(), 13U);
+  for (const json& row : before) {
+    const auto same = std::find_if(after.begin(), after.end(),
+                                   [&](const json& other) { return other.at("point") == row.at("point"); });
+    ASSERT_NE(same, after.end());
+    EXPECT_EQ(same->at("frame_ms_median"), row.at("frame_ms_median"));
+    EXPECT_EQ(same->at("started_utc"), row.at("started_utc"));
+  }
+}
+
+TEST_F(Sweep, ResultsComeAsCsvToo) {
+  ASSERT_TRUE(succeeded(sweep()));
+  const Outcome outcome = pellucid({"results", store, "--format", "csv"});
+  ASSERT_TRUE(succeeded(outcome));
+  std::istringstream text(outcome.out);
+  std::string header, line;
+  std::getline(text, header);
+  for (const char* column : {"technique", "hulls", "slices", "frame_ms_median", "rmse", "flip_mean"})
+    EXPECT_NE(("," + header + ",").find(std::string(",") + column + ","), std::string::npos) << column;
+  std::size_t count = 0;
+  while (std::getline(text, line))
+    ++count;
+  EXPECT_EQ(count, 4U);
+}
+
+TEST_F(Sweep, PlotsInEveryFormat) {
+  ASSERT_TRUE(succeeded(sweep()));
+  const std::vector<std::pair<std::string, std::string>> kinds{{"svg", "<"}, {"png", "\x89PNG"}, {"pdf", "%PDF"}};
+  for (const auto& [extension, magic] : kinds) {
+    const auto figure = folder / ("figure." + extension);
+    ASSERT_TRUE(succeeded(pellucid({"plot", store, "-o", figure.string()}))) << extension;
+    EXPECT_TRUE(read_file(figure).starts_with(magic)) << extension;
+  }
+  EXPECT_TRUE(refused(pellucid({"plot", store, "-o", (folder / "figure.gif").string()}), 2, {".svg", ".png", ".pdf"}));
+  EXPECT_TRUE(refused(pellucid({"plot", store, "-o", (folder / "none/f.svg").string()}), 1, {"f.svg"}));
+}
+
+TEST_F(Sweep, FailuresLeaveTheStoreAsItWas) {
+  ASSERT_TRUE(succeeded(sweep()));
+  const json before = rows();
+  const std::string good = read_file(spec);
+  write_file(spec, good + "\n[run.axs]\n");
+  EXPECT_TRUE(refused(sweep(), 2, {"small.toml:"}));
+  write_file(spec, small_spec(scene, "[1, 99]"));
+  EXPECT_TRUE(refused(sweep(), 2, {"small.toml:", "hulls", "[1, 64]"}));
+  write_file(spec, good);
+  EXPECT_TRUE(refused(pellucid({"table", "sampling_hulls.table9", "--store", store}), 2, {"sampling_hulls.table1"}));
+  EXPECT_TRUE(refused(pellucid({"results", store, "--format", "xml"}), 2, {"xml"}));
+  EXPECT_EQ(rows(), before);
+}
+
+TEST_F(Sweep, SpecErrorsNameFileLineAndColumn) {
+  const std::string good = read_file(spec);
+  auto with = [&](const std::string& text) {
+    write_file(spec, text);
+    return sweep({"--dry-run"});
+  };
+  auto replaced = [&](const std::string& what, const std::string& by) {
+    std::string text = good;
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), by);
+  };
+  EXPECT_TRUE(refused(with(replaced("title = \"A", "title = A")), 2, {"small.toml:2:9"}));
+  EXPECT_TRUE(refused(with(replaced("metrics", "metrcs")), 2, {"small.toml:3:1", "metrcs", "metrics"}));
+  EXPECT_TRUE(refused(with(replaced("\"flip\"", "\"flop\"")), 2, {"small.toml:3:", "flop", "flip"}));
+  EXPECT_TRUE(refused(with(replaced("hulls = [", "hull = [")), 2, {"small.toml:20:", "'hull'", "'hulls'"}));
+  EXPECT_TRUE(refused(with(replaced("[1, 2, 4]", "[1, 2, 400]")), 2, {"small.toml:20:", "400", "[1, 64]"}));
+  EXPECT_TRUE(refused(with(replaced("[1, 2, 4]", "[1, \"two\"]")), 2, {"small.toml:20:", "hulls"}));
+  EXPECT_TRUE(refused(with(replaced("[1, 2, 4]", "[]")), 2, {"small.toml:20:", "hulls"}));
+  EXPECT_TRUE(
+      refused(with(replaced("\"sampling_hulls\"", "\"sampling_hull\"")), 2, {"small.toml:15:", "sampling_hulls"}));
+  EXPECT_TRUE(refused(with(replaced("48x36", "100000x100000")), 2, {"small.toml:17:"}));
+  EXPECT_TRUE(refused(with(replaced("timeout_s = 60", "timeout_s = \"60\"")), 2, {"small.toml:4:"}));
+  EXPECT_TRUE(refused(with(""), 2, {"small.toml"}));
+  EXPECT_FALSE(std::filesystem::exists(store));
+}
+
+TEST_F(Sweep, RefusesStoresThatAreNone) {
+  const auto text =
+      write_file(folder / "text.db", "not a store, but long enough to be looked at: " + std::string(2000, 'x'));
+  const std::string before = read_file(text);
+  EXPECT_TRUE(refused(pellucid({"results", text.string()}), 2, {"text.db"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "status", text.string()}), 2, {"text.db"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "run", spec, "--store", text.string()}), 2, {"text.db"}));
+  EXPECT_TRUE(refused(pellucid({"plot", text.string(), "-o", (folder / "f.svg").string()}), 2, {"text.db"}));
+  EXPECT_EQ(read_file(text), before);
+  const std::string missing = (folder / "missing.db").string();
+  EXPECT_TRUE(refused(pellucid({"results", missing}), 2, {"missing.db"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "status", missing}), 2, {"missing.db"}));
+  EXPECT_FALSE(std::filesystem::exists(missing));
+  EXPECT_TRUE(refused(pellucid({"sweep", "run", spec, "--store", (text / "below.db").string()}), 1, {"below.db"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "run", spec, "--store", "/proc/sweep.db"}), 1, {"/proc/sweep.db"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "run", spec}), 2, {"--store"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "run", "sampling_hulls_tabel1", "--store", store, "--dry-run"}), 2,
+                      {"sampling_hulls_table1"}));
+}
+
+TEST_F(Sweep, TablesNeedTheirPointsAndSayHowToGetThem) {
+  const Outcome unknown = pellucid({"table", "sampling_hulls.tabel1"});
+  EXPECT_TRUE(refused(unknown, 2, {"sampling_hulls.table1"}));
+  // The small sweep has none of the table's points: each cell is empty or the table says what is missing.
+  ASSERT_TRUE(succeeded(sweep()));
+  const Outcome outcome = pellucid({"table", "sampling_hulls.table1", "--store", store, "--format", "json"});
+  if (outcome.status == 0) {
+    for (const json& row : json::parse(outcome.out))
+      EXPECT_TRUE(row.at("ours").is_null()) << row;
+  } else {
+    EXPECT_TRUE(refused(outcome, 2, {"sampling_hulls"}));
+  }
+}
+
+TEST(Reproduce, RefusesWhatItDoesNotKnow) {
+  const Folder folder;
+  const std::string out = (folder / "results").string();
+  EXPECT_TRUE(refused(pellucid({"reproduce", "sampling_huls", "--preview", "-o", out}), 2, {"sampling_hulls"}));
+  EXPECT_TRUE(refused(pellucid({"reproduce", (folder / "none.exr").string(), "-o", out}), 2, {"none.exr"}));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const auto file = write_file(folder / "file", "");
+  EXPECT_TRUE(refused(pellucid({"reproduce", "sampling_hulls", "--preview", "-o", (file / "results").string()}), 1,
+                      {"results"}));
+}
+
+}  // namespace
+}  // namespace pellucid::test
