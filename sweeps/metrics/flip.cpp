@@ -12,14 +12,6 @@
 #include "sweeps/metrics/pixels.hpp"
 
 namespace pellucid::sweeps {
-namespace {
-
-// What is perceived of the reference is kept for all exposures up to this size (a 720x540 frame takes 7.8 MB an
-// exposure) and computed again for every test beyond it.
-constexpr std::size_t kLargestCache = std::size_t{1} << 30;
-
-}  // namespace
-
 Exposures automatic_exposures(const Image& reference) {
   check_pixels(reference, "reference");
   std::vector<double> luminance;
@@ -48,17 +40,19 @@ Exposures automatic_exposures(const Image& reference) {
   const double a = k[0] - t * k[3], b = k[1] - t * k[4], c = k[2] - t * k[5];
   const double x_t = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
   Exposures out{std::log2(x_t / brightest), std::log2(x_t / typical), 0};
-  out.count = std::max(2, static_cast<int>(std::ceil(out.stop - out.start)));
+  // One exposure a stop; the quotient's logarithm, as the difference of the two may round above a whole number.
+  out.count = std::max(2, static_cast<int>(std::ceil(std::log2(brightest / typical))));
   return out;
 }
 
 struct FlipReference::State {
-  State(const Image& image, bool hdr, const Exposures& used, const FlipOptions& options)
-      : reference(image), scene_linear(hdr), exposures(used), filters(options.pixels_per_degree) {}
+  State(const Image& image, bool hdr, const Exposures& used, const FlipOptions& given)
+      : reference(image), scene_linear(hdr), exposures(used), options(given), filters(given.pixels_per_degree) {}
 
   const Image reference;
   const bool scene_linear;
   const Exposures exposures;
+  const FlipOptions options;
   const flip::Filters filters;
   /// One for each exposure, or empty when they would be too large: kChannels planes of width x height.
   std::vector<std::vector<float>> perceived;
@@ -70,13 +64,14 @@ struct FlipReference::State {
 
   /// The displayed image at an exposure, as linear components in [0, 1].
   flip::LinearSource displayed(const Image& image, int pass) const {
-    const float gain = scene_linear ? static_cast<float>(std::exp2(exposures.at(pass))) : 1.0f;
+    // In double: the gain of a reference of tiny radiances is beyond float, and 0 times infinity would be NaN.
+    const double gain = scene_linear ? std::exp2(exposures.at(pass)) : 1.0;
     return [&image, gain, hdr = scene_linear](int y, float* r, float* g, float* b) {
       float* out[3] = {r, g, b};
       for (int x = 0; x < image.width; ++x) {
         for (int c = 0; c < 3; ++c) {
           const float v = channel(image, image.at(x, y), c);
-          out[c][x] = hdr ? flip::aces(gain * std::max(v, 0.0f)) : srgb_to_linear(std::clamp(v, 0.0f, 1.0f));
+          out[c][x] = hdr ? flip::aces(gain * double{std::max(v, 0.0f)}) : srgb_to_linear(std::clamp(v, 0.0f, 1.0f));
         }
       }
     };
@@ -99,7 +94,7 @@ struct FlipReference::State {
 FlipReference::FlipReference(std::unique_ptr<State> state) : state_(std::move(state)) {
   const std::size_t bytes =
       static_cast<std::size_t>(state_->passes()) * flip::kChannels * state_->area() * sizeof(float);
-  if (bytes > kLargestCache) return;
+  if (bytes > state_->options.largest_cache_bytes) return;
   flip::Perception perception(state_->reference.width, state_->reference.height, state_->filters);
   for (int i = 0; i < state_->passes(); ++i)
     state_->perceived.push_back(state_->perceive_reference(perception, i));
@@ -128,7 +123,7 @@ FlipReference FlipReference::scene_linear(const Image& reference, const Exposure
                                           const FlipOptions& options) {
   check_pixels(reference, "reference");
   check_options(options);
-  constexpr double kMostStops = 120;  // 2^120 times a radiance of 1 is still a float
+  constexpr double kMostStops = 200;  // floats span 277
   constexpr int kMostExposures = 1000;
   if (!(std::abs(exposures.start) <= kMostStops && std::abs(exposures.stop) <= kMostStops))
     throw InputError(fmt::format("exposures from {} to {} stops are out of range [-{}, {}]", exposures.start,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -8,8 +9,10 @@
 
 namespace pellucid::sweeps {
 
-// FLIP: the error that a viewer sees when alternating between two images [andersson2020], and its extension to
-// scene-linear images by a sweep over exposures [andersson2021]. Errors lie in [0, 1]; 0 is "no visible difference".
+// FLIP (references.bib: andersson2020, andersson2021): the error that a viewer sees when alternating between two
+// images, and its extension to scene-linear images by a sweep over exposures. Errors lie in [0, 1]; 0 is "no visible
+// difference". Where the published tool differs from the papers (constants to nine digits, separable filters), this
+// follows the tool.
 
 /// Pixels per degree of visual angle of the published default: a 0.7 m wide display of 3840 pixels seen from 0.7 m.
 inline constexpr double kDefaultPixelsPerDegree = 67.02064327658225;  // 0.7 * 3840 / 0.7 * pi / 180
@@ -23,13 +26,17 @@ struct Exposures {
   bool operator==(const Exposures&) const = default;
 };
 
-/// The automatic exposures of [andersson2021]: the brightest pixel of `reference` and its median one are
-/// brought to 0.85 by the ACES curve; one exposure per stop between them, at least two. A black reference, which has no
-/// such exposures, gives {0, 0, 2}.
+/// The automatic exposures of HDR-FLIP: the brightest pixel of `reference` and its median one are brought to 0.85 by
+/// the ACES curve; one exposure per stop between them, at least two. The median of an even number of pixels is the
+/// upper one. Where the publication leaves it undefined: if half of the pixels are black, the median is that of the
+/// others; a black reference gives {0, 0, 2}.
 Exposures automatic_exposures(const Image& reference);
 
 struct FlipOptions {
-  double pixels_per_degree = kDefaultPixelsPerDegree;
+  double pixels_per_degree = kDefaultPixelsPerDegree;  ///< in [1, 1000]
+  /// What is perceived of the reference is kept for every exposure up to this size, and computed again for each test
+  /// beyond it. A 720x540 frame takes 7.8 MB an exposure.
+  std::size_t largest_cache_bytes = std::size_t{1} << 30;
 };
 
 /// All of FLIP that depends on the reference only, computed once for all of its tests. Immutable, and safe to use from
@@ -57,7 +64,7 @@ class FlipReference {
   std::unique_ptr<State> state_;
 };
 
-/// The pooled statistics that the published tool prints [andersson2020]. A weighted percentile p is the
+/// The pooled statistics that the published tool prints. A weighted percentile p is the
 /// smallest error e such that the errors up to e sum to more than p of the sum of all; it is 0 when every error is 0.
 struct FlipStatistics {
   double mean = 0;

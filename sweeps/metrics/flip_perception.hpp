@@ -8,8 +8,8 @@
 
 namespace pellucid::sweeps::flip {
 
-// The part of FLIP that looks at one image alone [andersson2020]: opponent colours blurred as the eye blurs them, then
-// L*a*b* with the Hunt effect, and the strength of edges and points. FLIP compares two of these.
+// The part of FLIP that looks at one image alone (references.bib: andersson2020): opponent colours blurred as the eye
+// blurs them, then L*a*b* with the Hunt effect, and the strength of edges and points. FLIP compares two of these.
 //
 // The filters are applied separably, as the published tool does from version 1.2 on; the paper states them in 2D. Each
 // is a product of 1D filters, the blue-yellow one a sum of two products, so both forms agree up to rounding.
@@ -58,9 +58,9 @@ void combine(const Row& reference, const Row& test, int width, float* error);
 /// The ACES curve of HDR-FLIP, the pre-exposure of its published fit undone: (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x +
 /// k5), clamped to [0, 1]; x >= 0.
 inline constexpr std::array<double, 6> kAces = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0, 0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
-inline float aces(float x) {
+inline float aces(double exposed) {
   constexpr auto k = [](std::size_t i) { return static_cast<float>(kAces[i]); };
-  x = std::min(x, 1e4f);  // far beyond where the curve reaches 1, and its square does not overflow
+  const float x = static_cast<float>(std::min(exposed, 1e4));  // the curve is at 1 long before; the square is finite
   return std::min((k(0) * x * x + k(1) * x + k(2)) / (k(3) * x * x + k(4) * x + k(5)), 1.0f);
 }
 

@@ -15,8 +15,8 @@
 
 namespace pellucid::sweeps {
 
-// Image metrics of a test t against a reference r. An image has 1 (grey, used for R, G and B), 3 or 4 channels; alpha
-// is not compared. Means go over the pixels and R, G, B.
+// Image metrics of a test t against a reference r (references.bib: wang2004, rousselle2011, vogels2018). An image has 1
+// (grey, used for R, G and B), 3 or 4 channels; alpha is not compared. Means go over the pixels and R, G, B.
 //
 //   name    value                                                   scene-linear (EXR)             display-encoded
 //   (PNG) mse     mean (t - r)^2                                          radiance                       encoded, [0,
@@ -55,11 +55,11 @@ class MetricSet {
 };
 
 struct ComparisonOptions {
-  MetricSet metrics;
-  bool display_encoded = false;        ///< ImageFile::display_encoded of both images
-  bool keep_map = false;               ///< fill ComparisonResult::flip_map, whether or not "flip" is in `metrics`
-  FlipOptions flip;                    ///< pixels per degree
-  std::optional<Exposures> exposures;  ///< scene-linear only; automatic_exposures(reference) when absent
+  MetricSet metrics{};
+  bool display_encoded = false;          ///< ImageFile::display_encoded of both images
+  bool keep_map = false;                 ///< fill ComparisonResult::flip_map, whether or not "flip" is in `metrics`
+  FlipOptions flip{};                    ///< pixels per degree
+  std::optional<Exposures> exposures{};  ///< scene-linear only; automatic_exposures(reference) when absent
 };
 
 struct ComparisonResult {

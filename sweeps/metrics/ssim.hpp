@@ -6,8 +6,8 @@
 
 namespace pellucid::sweeps {
 
-/// The structural similarity index [wang2004] of lumas in [0, 1] (dynamic range L = 1): an 11x11 Gaussian window of
-/// sigma 1.5 that sums to 1, K1 = 0.01, K2 = 0.03. Windows lie wholly inside the frame.
+/// The structural similarity index (references.bib: wang2004) of lumas in [0, 1] (dynamic range L = 1): an 11x11
+/// Gaussian window of sigma 1.5 that sums to 1, K1 = 0.01, K2 = 0.03. Windows lie wholly inside the frame.
 class SsimReference {
  public:
   static constexpr int kWindow = 11, kRadius = kWindow / 2;
