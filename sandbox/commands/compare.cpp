@@ -1,4 +1,5 @@
 // pellucid compare.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -131,7 +132,11 @@ ordered_json to_json(const sweeps::Comparison& comparison, const sweeps::Compari
 }
 
 int compare(const Options& options) {
-  if (!options.map.empty()) check_output(options.map, {".png", ".exr"});
+  if (!options.map.empty()) {
+    if (options.map.extension() != ".png" && options.map.extension() != ".exr")
+      throw InputError(fmt::format("--map {}: the name must end in .png or .exr", options.map.string()));
+    check_output(options.map, {".png", ".exr"});
+  }
   const sweeps::MetricSet metrics = options.metrics.empty() ? sweeps::MetricSet() : sweeps::MetricSet(options.metrics);
   ImageFile reference = read_image(options.reference);
   const ImageFile test = read_image(options.test);
