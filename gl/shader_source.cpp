@@ -1,6 +1,6 @@
 #include <algorithm>
+#include <charconv>
 #include <optional>
-#include <regex>
 #include <set>
 
 #include <fmt/format.h>
@@ -129,18 +129,41 @@ struct Complaint {
   std::string message;
 };
 
-// The three forms in use: Mesa, NVIDIA, and what the ARB's reference compiler (and so most others) writes.
-std::optional<Complaint> parse_complaint(const std::string& text) {
-  static const std::regex mesa(R"(^\s*\d+:(\d+)\(\d+\):\s*(.*)$)");
-  static const std::regex nvidia(R"(^\s*\d+\((\d+)\)\s*:\s*(.*)$)");
-  static const std::regex reference(R"(^\s*(ERROR|WARNING):\s*\d+:(\d+):\s*(.*)$)");
-  std::smatch match;
-  const auto number = [](const std::string& digits) { return digits.size() < 9 ? std::stoi(digits) : 0; };
-  if (std::regex_match(text, match, mesa) || std::regex_match(text, match, nvidia))
-    return Complaint{number(match[1]), match[2]};
-  if (std::regex_match(text, match, reference))
-    return Complaint{number(match[2]), (match[1] == "ERROR" ? "error: " : "warning: ") + match[3].str()};
-  return std::nullopt;
+// Reads a log line from the left; each step says whether it found what it looked for.
+struct Scanner {
+  std::string_view rest;
+  bool literal(std::string_view text) {
+    const bool found = rest.starts_with(text);
+    if (found) rest.remove_prefix(text.size());
+    return found;
+  }
+  bool number(int& value) {
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error != std::errc{}) return false;
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    return true;
+  }
+  std::string message() const { return std::string(trimmed(rest)); }
+};
+
+// The three forms in use: Mesa's `0:5(10): …`, NVIDIA's `0(5) : …`, and `ERROR: 0:5: …` of most others.
+std::optional<Complaint> parse_complaint(std::string_view text) {
+  Scanner scan{trimmed(text)};
+  std::string severity;
+  if (scan.literal("ERROR: ")) severity = "error: ";
+  if (scan.literal("WARNING: ")) severity = "warning: ";
+  int string_index = 0, line = 0, column = 0;
+  if (!scan.number(string_index)) return std::nullopt;
+  if (scan.literal("(")) {
+    if (!scan.number(line) || !scan.literal(")")) return std::nullopt;
+    scan.rest = trimmed(scan.rest);
+    if (!scan.literal(":")) return std::nullopt;
+    return Complaint{line, severity + scan.message()};
+  }
+  if (!scan.literal(":") || !scan.number(line)) return std::nullopt;
+  if (scan.literal("(") && (!scan.number(column) || !scan.literal(")"))) return std::nullopt;
+  if (!scan.literal(":")) return std::nullopt;
+  return Complaint{line, severity + scan.message()};
 }
 
 }  // namespace
