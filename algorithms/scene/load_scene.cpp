@@ -53,9 +53,9 @@ std::string find_scene(const std::string& name) {
     if (known.back() == name) return resource;
   }
   const std::string near = nearest_name(name, known);
-  throw InputError(fmt::format(
-      "unknown scene '{}'; {}, or name a file that ends in .toml", name,
-      near.empty() ? fmt::format("there are {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near)));
+  const std::string hint =
+      !near.empty() ? fmt::format("did you mean '{}'?", near) : fmt::format("there are {}", fmt::join(known, ", "));
+  throw InputError(fmt::format("unknown scene '{}'; {} (a file's name must end in .toml)", name, hint));
 }
 
 }  // namespace
