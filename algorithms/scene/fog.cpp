@@ -44,7 +44,7 @@ std::vector<float> make_constant_density(const glm::ivec3& size, float density) 
 }
 
 std::vector<float> make_fog_density(const glm::ivec3& size, const FogOptions& options) {
-  assert(options.octaves >= 1 && options.frequency > 0.0F && options.height_falloff >= 0.0F);
+  assert(options.octaves >= 1 && options.frequency >= 0.0F && options.height_falloff >= 0.0F);
   assert(options.contrast >= 0.0F && options.contrast <= 1.0F);
   std::vector<float> density(voxel_count(size), 0.0F);
   for_each_row(size, density, [&](int y, int z, std::span<float> row) {

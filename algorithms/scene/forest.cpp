@@ -29,7 +29,7 @@ enum Stream : std::uint32_t { kPlaces = 11, kKinds = 12, kUndergrowth = 13 };
 glm::vec3 ground_color(const ForestOptions& options, float x, float z, float height) {
   const float patches = fractal_noise({x / 4.5F, 3.5F, z / 4.5F}, 4, options.seed + 71U);
   const float grain = fractal_noise({x / 0.7F, 9.5F, z / 0.7F}, 2, options.seed + 72U);
-  const glm::vec3 moss(0.062F, 0.095F, 0.026F), litter(0.15F, 0.088F, 0.045F), soil(0.06F, 0.046F, 0.033F);
+  const glm::vec3 moss(0.062F, 0.095F, 0.026F), litter(0.125F, 0.084F, 0.044F), soil(0.06F, 0.046F, 0.033F);
   // Moss keeps to the hollows, litter to the ridges.
   const float dry = std::clamp(0.5F + 1.6F * patches + 0.25F * height, 0.0F, 1.0F);
   const glm::vec3 cover = glm::mix(moss, litter, dry * dry * (3.0F - 2.0F * dry));

@@ -123,7 +123,7 @@ float fractal_noise(const glm::vec3& p, int octaves, std::uint32_t seed) {
 
 void add_gradient_noise_row(float x0, float dx, float y, float z, std::uint32_t seed, float amplitude,
                             std::span<float> sum) {
-  assert(dx > 0.0F);
+  assert(dx >= 0.0F);
   const float cell_y = std::floor(y), cell_z = std::floor(z);
   const float fy = y - cell_y, fz = z - cell_z;
   const auto iy = static_cast<std::int32_t>(cell_y);

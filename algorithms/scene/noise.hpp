@@ -34,7 +34,7 @@ float gradient_noise(const glm::vec3& p, std::uint32_t seed);
 /// Sum of `octaves` of gradient noise, each of twice the frequency and half the amplitude, divided by the sum of the
 /// amplitudes: in [−1, 1].
 float fractal_noise(const glm::vec3& p, int octaves, std::uint32_t seed);
-/// Adds amplitude · gradient_noise((x0 + i·dx, y, z)) to sum[i]; dx > 0. The lattice's work is done once per cell.
+/// Adds amplitude · gradient_noise((x0 + i·dx, y, z)) to sum[i]; dx ≥ 0. The lattice's work is done once per cell.
 void add_gradient_noise_row(float x0, float dx, float y, float z, std::uint32_t seed, float amplitude,
                             std::span<float> sum);
 

@@ -114,12 +114,14 @@ void add_bough(Mesh& mesh, const Bough& b, Random& random) {
     const float step = 1.0F / static_cast<float>(b.teeth);
     for (const float hand : {-1.0F, 1.0F}) {
       const float reach = b.width * (1.0F - 0.72F * s) * random.range(0.7F, 1.2F);
-      const float ahead = std::min(s + step * random.range(0.75F, 1.35F), 1.0F);
+      const float ahead = std::min(s + step * random.range(0.75F, 1.35F) * (b.teeth > 3 ? 1.5F : 1.0F), 1.0F);
       const glm::vec3 tip = spine(ahead) + side * (hand * reach) - kUp * (reach * random.range(0.15F, 0.5F));
       const glm::vec3 normal = glm::normalize(crown + 0.45F * hand * side);
       const unsigned twig =
           add_vertex(mesh, tip, normal, tint(std::min(1.0F, 0.35F + ahead)) * random.range(0.8F, 1.2F));
-      const unsigned a = first + static_cast<unsigned>(i), c = a + 1;
+      // Where there are many teeth each reaches over the next.
+      const unsigned a = first + static_cast<unsigned>(i);
+      const unsigned c = first + static_cast<unsigned>(std::min(i + (b.teeth > 3 ? 2 : 1), b.teeth));
       if (hand > 0.0F) {
         mesh.triangles.emplace_back(a, twig, c);
       } else {
