@@ -76,11 +76,6 @@ class FrameTimes {
   int in_flight_ = 0;
 };
 
-/// The session's values as they are now.
-bool same(const nlohmann::json& current, const Value& wanted) {
-  return current == value_to_json(wanted);
-}
-
 void check_finite(const Image& image) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     if (std::isfinite(image.pixels[i])) continue;
@@ -203,9 +198,11 @@ Measurement Measurer::measure(const Point& point, const std::filesystem::path& r
     result.row["peak_rss_bytes"] = peak_rss_bytes();
     result.row["scene_hash"] = session_->scene().content_hash();
     compare(point, references, result);
-    // Last, so that no parameter's name can hide behind a result's.
-    for (const auto& [name, value] : session_->parameters().items())
+    const nlohmann::json parameters = session_->parameters();
+    for (const auto& [name, value] : parameters.items()) {
+      assert(!result.row.contains(name) && "a parameter has the name of a result");
       result.row[name] = value;
+    }
     return result;
   } catch (...) {
     session_.reset();

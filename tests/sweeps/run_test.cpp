@@ -1,0 +1,323 @@
+#include "sweeps/run.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <random>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "gl/error.hpp"
+#include "sweeps/store.hpp"
+#include "sweeps/worker_process.hpp"
+#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_worker.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+using nlohmann::json;
+using test::FakeCatalogue;
+using test::input_error;
+using test::self;
+using test::TemporaryFolder;
+
+class Sweep : public testing::Test {
+ protected:
+  Sweep() {
+    options.worker = self({"fake-worker", log.string(), "a device"});
+    options.argv = {"pellucid", "sweep", "run", "a b.toml"};
+    options.quiet = true;
+  }
+  SweepSummary run(const std::string& text) {
+    const Spec spec = parse_spec(text, "s.toml", catalogue);
+    return run_sweep(spec, make_plan(spec, catalogue), store, options);
+  }
+  /// What the fake workers were asked for, in order.
+  std::vector<std::string> requests() const {
+    std::ifstream file(log);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);)
+      lines.push_back(line);
+    return lines;
+  }
+  static std::string spec(const std::string& rest) {
+    return "name = 's'\nmetrics = ['rmse']\n" + rest +
+           "[[run]]\nname = 'r'\ntechniques = ['faulty']\nscenes = ['ball']\nsizes = ['8x8']\n";
+  }
+
+  TemporaryFolder folder;
+  FakeCatalogue catalogue;
+  std::filesystem::path store = folder / "s.db";
+  std::filesystem::path log = folder / "log";
+  RunOptions options;
+};
+
+TEST_F(Sweep, RecordsWhereARowComesFrom) {
+  const SweepSummary summary = run(spec("") + "[run.axes]\nn = [1, 2, 3]\nscene.density = [0.1]\n");
+  EXPECT_EQ(summary.planned, 3U);
+  EXPECT_EQ(summary.measured, 3U);
+  EXPECT_EQ(summary.failed, 0U);
+  EXPECT_EQ(summary.left, 0U);
+  const std::vector<json> rows = read_rows(store, true);
+  ASSERT_EQ(rows.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& row = rows[i];
+    EXPECT_EQ(row.at("n"), i + 1);
+    EXPECT_EQ(row.at("scene.density"), 0.1);
+    EXPECT_EQ(row.at("frame.format"), "half");
+    EXPECT_EQ(row.at("technique"), "faulty");
+    EXPECT_EQ(row.at("scene"), "ball");
+    EXPECT_EQ(row.at("view"), "near");
+    EXPECT_EQ(row.at("width"), 8);
+    EXPECT_EQ(row.at("status"), "ok");
+    EXPECT_EQ(row.at("device"), "a device");
+    EXPECT_EQ(row.at("driver"), "1.0");
+    EXPECT_EQ(row.at("clock"), "finish");
+    EXPECT_EQ(row.at("argv"), "pellucid sweep run 'a b.toml'");
+    EXPECT_EQ(row.at("scene_hash"), "hash of the ball");
+    EXPECT_EQ(row.at("shader_hash"), "shaders 1 of faulty");
+    EXPECT_TRUE(row.at("commit").is_string());
+    EXPECT_TRUE(row.at("dirty").is_boolean());
+    EXPECT_EQ(row.at("started_utc").get<std::string>().size(), 20U);
+    EXPECT_TRUE(row.at("psnr").is_null());  // equal images: infinite
+    EXPECT_EQ(row.at("frame_ms_samples").size(), 30U);
+  }
+}
+
+TEST_F(Sweep, GoesOnAfterEveryKindOfFailure) {
+  const SweepSummary summary =
+      run(spec("timeout_s = 0.6\n") +
+          "[run.axes]\ndoes = ['good', 'fail', 'crash', 'abort', 'hang', 'nan', 'garbage', 'truncate', "
+          "'leave', 'unconverged']\n");
+  EXPECT_EQ(summary.measured, 2U);
+  EXPECT_EQ(summary.failed, 8U);
+  EXPECT_EQ(summary.unconverged, 1U);
+  std::map<std::string, json> rows;
+  for (const json& row : read_rows(store))
+    rows[row.at("does")] = row;
+  ASSERT_EQ(rows.size(), 10U);
+  const auto failure = [&](const char* does) {
+    EXPECT_EQ(rows.at(does).at("status"), "failed");
+    EXPECT_FALSE(rows.at(does).contains("frame_ms_median"));
+    EXPECT_EQ(rows.at(does).at("repeat").get<std::string>().find(
+                  std::string("pellucid render ball -t faulty -s does=") + does + " --view near --size 8x8 -o "),
+              0U);
+    return rows.at(does).at("failure").get<std::string>();
+  };
+  EXPECT_EQ(rows.at("good").at("status"), "ok");
+  EXPECT_EQ(rows.at("unconverged").at("timing"), "unconverged");
+  EXPECT_EQ(failure("fail"), "the scene has no volume");
+  EXPECT_EQ(failure("crash").substr(0, 34), "the worker was killed by signal 11");
+  EXPECT_EQ(failure("abort").substr(0, 33), "the worker was killed by signal 6");
+  EXPECT_NE(failure("abort").find("; its last words: assertion of the fake failed"), std::string::npos);
+  EXPECT_EQ(failure("hang"), "the worker took longer than timeout_s = 0.6");
+  EXPECT_EQ(failure("nan"), "frame_ms_median is not a finite number");
+  EXPECT_EQ(failure("garbage"), "the worker sent what is no answer: 'Mesa: chatter on standard output'");
+  EXPECT_EQ(failure("truncate"), "the worker's answer breaks off: '{\"type\": \"done\", \"id\": \"'");
+  EXPECT_EQ(failure("leave"), "the worker ended with status 7");
+}
+
+TEST_F(Sweep, AFinishedOneDoesNothing) {
+  const std::string text = spec("") + "[run.axes]\nn = [1, 2, 3]\ndoes = ['good', 'fail']\n";
+  run(text);
+  const std::size_t asked = requests().size();
+  options.worker = {"/nonexistent/worker"};  // would throw if it were started
+  const SweepSummary again = run(text);
+  EXPECT_EQ(again.reused, 6U);
+  EXPECT_EQ(again.measured + again.failed + again.left, 0U);
+  EXPECT_EQ(requests().size(), asked);
+}
+
+TEST_F(Sweep, RetriesFailuresOnlyWhenAsked) {
+  const std::string text = spec("") + "[run.axes]\nn = [1, 2]\ndoes = ['good', 'fail']\n";
+  run(text);
+  options.retry_failed = true;
+  const SweepSummary again = run(text);
+  EXPECT_EQ(again.reused, 2U);
+  EXPECT_EQ(again.failed, 2U);
+}
+
+TEST_F(Sweep, ALimitLeavesTheRest) {
+  const std::string text = spec("") + "[run.axes]\nn = [1, 2, 3, 4, 5]\n";
+  options.limit = 2;
+  EXPECT_EQ(run(text).left, 3U);
+  EXPECT_EQ(run(text).left, 1U);
+  EXPECT_EQ(run(text).left, 0U);
+  const std::vector<std::string> asked = requests();
+  EXPECT_EQ(asked.size(), 5U);
+  EXPECT_EQ(std::set<std::string>(asked.begin(), asked.end()).size(), 5U);
+}
+
+TEST_F(Sweep, MeasuresTheBaselineFirstBetweenAndLast) {
+  const SweepSummary summary = run(spec("") + "baseline = true\n[run.axes]\nn = { from = 1, to = 20, steps = 20 }\n");
+  std::string kinds;
+  for (const std::string& request : requests())
+    kinds += request[0];
+  EXPECT_EQ(kinds, "tmmmmmmmmtmmmmmmmmtmmmmt");
+  EXPECT_EQ(summary.baseline_drift, 0.0);
+  EXPECT_EQ(read_rows(store)[0].at("baseline_drift"), 0.0);
+  EXPECT_EQ(Store(store, Access::read).baselines("s").size(), 4U);
+}
+
+TEST_F(Sweep, ABrokenBaselineCostsOnlyTheDrift) {
+  const SweepSummary summary = run(spec("") + "baseline = true\n[run.axes]\ndoes = ['crash', 'good']\n");
+  EXPECT_EQ(summary.measured, 1U);
+  EXPECT_EQ(summary.failed, 1U);
+  EXPECT_FALSE(summary.baseline_drift.has_value());
+}
+
+TEST_F(Sweep, NeverPoolsDevices) {
+  run(spec("") + "[run.axes]\nn = [1]\n");
+  options.worker = self({"fake-worker", log.string(), "another device"});
+  const std::string message = input_error([&] { run(spec("") + "[run.axes]\nn = [1, 2]\n"); });
+  EXPECT_NE(message.find("holds measurements of a device (1.0), and this worker renders on another device (1.0)"),
+            std::string::npos);
+  EXPECT_EQ(Store(store, Access::read).points().size(), 1U);
+}
+
+TEST_F(Sweep, SaysWhyNoWorkerStarts) {
+  const auto error = [&](std::vector<std::string> worker) {
+    options.worker = std::move(worker);
+    try {
+      run(spec("timeout_s = 0.5\n") + "[run.axes]\nn = [1]\n");
+    } catch (const RuntimeError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error(self({"dead-worker"})), "no render worker: it ended with status 1: no GL device");
+  EXPECT_EQ(error(self({"chatty-worker"})), "no render worker: it began with 'hello'");
+  EXPECT_EQ(error({"/nonexistent/worker"}), "no render worker: it ended with status 127: No such file or directory");
+  EXPECT_EQ(error({"sleep", "30"}), "no render worker: it said nothing for 1 s");
+}
+
+TEST_F(Sweep, StopsAtAnInterruptAndGoesOnLater) {
+  const std::string text = spec("") + "[run.axes]\nn = { from = 1, to = 40, steps = 40 }\n[run.fixed]\nsleep_ms = 30\n";
+  std::thread interrupter([&] {
+    while (requests().size() < 4)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(::getpid(), SIGINT);
+  });
+  const SweepSummary first = run(text);
+  interrupter.join();
+  EXPECT_TRUE(first.interrupted);
+  EXPECT_GE(first.measured, 3U);
+  EXPECT_GT(first.left, 0U);
+  EXPECT_EQ(first.failed, 0U);
+  const SweepSummary second = run(text);
+  EXPECT_FALSE(second.interrupted);
+  EXPECT_EQ(second.reused, first.measured);
+  EXPECT_EQ(second.left, 0U);
+  EXPECT_LE(requests().size(), 41U);
+}
+
+/// Starts this program in a role and returns its process.
+pid_t start(const std::vector<std::string>& command) {
+  const pid_t pid = ::fork();
+  if (pid != 0) return pid;
+  std::vector<char*> argv;
+  for (const std::string& word : command)
+    argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
+}
+
+TEST_F(Sweep, SurvivesBeingKilledAtAnyMoment) {
+  constexpr std::size_t kPoints = 60;
+  std::mt19937 random(2007);
+  std::size_t kills = 0;
+  std::size_t stored_before = 0;
+  for (;;) {
+    const pid_t pid = start(self({"fake-sweep", store.string(), log.string(), std::to_string(kPoints), "4", "50"}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10 + random() % 120));
+    ::kill(pid, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(::waitpid(pid, &status, 0), pid);
+    const bool finished = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    ASSERT_TRUE(finished || WIFSIGNALED(status)) << "status " << status;
+    kills += finished ? 0 : 1;
+    if (std::filesystem::exists(store)) {
+      // A kill within the very first moments may leave a store without a plan or even without a schema.
+      std::size_t stored = stored_before;
+      try {
+        stored = Store(store, Access::read).points().size();
+      } catch (const InputError& e) {
+        EXPECT_EQ(stored_before, 0U) << e.what();
+      }
+      EXPECT_GE(stored, stored_before);                                   // nothing is lost
+      EXPECT_LE(requests().size(), stored + kills + (finished ? 0 : 1));  // and at most the point in work is done again
+      stored_before = stored;
+    }
+    if (finished) break;
+    ASSERT_LT(kills, 500U);
+  }
+  EXPECT_GE(kills, 3U);
+  const std::vector<json> rows = read_rows(store, true);
+  ASSERT_EQ(rows.size(), kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    EXPECT_EQ(rows[i].at("n"), i + 1);
+    EXPECT_EQ(rows[i].at("status"), "ok");
+    EXPECT_EQ(rows[i].at("frame_ms_samples").size(), 50U);
+  }
+}
+
+TEST_F(Sweep, AFullDiskKeepsTheRowsThatAreThere) {
+  const std::string errors = (folder / "errors").string();
+  const pid_t pid = ::fork();
+  if (pid == 0) {
+    if (::freopen(errors.c_str(), "w", stderr) == nullptr) ::_exit(126);
+    ::_exit(test::run_role({"full-disk-sweep", store.string(), log.string(), "40", "0", "5000"}));
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(pid, &status, 0), pid);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  std::ifstream file(errors);
+  std::string message;
+  std::getline(file, message);
+  EXPECT_NE(message.find("cannot be written: "), std::string::npos) << message;
+  EXPECT_NE(message.find("Rows stored so far stay"), std::string::npos) << message;
+  const std::size_t kept = read_rows(store).size();
+  EXPECT_GE(kept, 3U);
+  EXPECT_LT(kept, 40U);
+  // With room again the sweep goes on.
+  const pid_t again = start(self({"fake-sweep", store.string(), log.string(), "40", "0", "5000"}));
+  ASSERT_EQ(::waitpid(again, &status, 0), again);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(read_rows(store).size(), 40U);
+}
+
+TEST(WorkerProcess, DiesWithItsOwner) {
+  pid_t pid = 0;
+  {
+    const WorkerProcess process({"sleep", "1000"});
+    pid = process.pid();
+    EXPECT_TRUE(process.alive());
+    EXPECT_EQ(::kill(pid, 0), 0);
+  }
+  EXPECT_NE(::kill(pid, 0), 0);
+}
+
+TEST(WorkerProcess, GivesWholeLinesOnly) {
+  WorkerProcess process({"sh", "-c", "printf 'one\\ntw'; sleep 0.1; printf 'o\\nthree'"});
+  const auto next = [&] {
+    return process.receive(std::chrono::steady_clock::now() + std::chrono::seconds(10), [] { return true; });
+  };
+  EXPECT_EQ(next().line, "one");
+  EXPECT_EQ(next().line, "two");
+  const WorkerProcess::Received last = next();
+  EXPECT_EQ(last.event, WorkerProcess::Event::ended);
+  EXPECT_EQ(last.line, "three");
+  EXPECT_EQ(process.end(), "ended with status 0");
+}
+
+}  // namespace
+}  // namespace pellucid::sweeps
