@@ -35,82 +35,112 @@ double largest(const glm::dvec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-// ∫ σ C T dt over the spans with three-point Gauss–Legendre quadrature on `parts` equal parts of each.
-template <class Source>
-glm::dvec3 integrate(const std::vector<CellSpan>& spans, int parts, Source source) {
-  static const double offset = std::sqrt(0.15);
-  const std::array<double, 3> nodes = {0.5 - offset, 0.5, 0.5 + offset};
-  constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-  glm::dvec3 sum(0.0);
-  double depth = 0.0;  // τ up to the span
-  for (const CellSpan& span : spans) {
-    for (int part = 0; part < parts; ++part) {
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const double s = (part + nodes[i]) / parts;
-        const double weight = kWeights[i] * span.length_m / parts * span.sigma(s) * std::exp(-depth - span.depth(s));
-        sum += weight * source(span.begin_m + s * span.length_m);
-      }
-    }
-    depth += span.depth(1.0);
-  }
-  return sum;
-}
-
 // The medium of a scene, ready for rays.
 class Medium {
  public:
   Medium(const Scene& scene, const Volume& volume)
-      : scene_(&scene),
-        grid_(volume),
-        albedo_(volume.albedo),
-        emission_(volume.emission),
-        uniform_(uniform_source(scene)) {
-    if (uniform_) source_ = medium_radiance(scene, glm::dvec3(0.0), albedo_, emission_);
-  }
+      : light_(scene), grid_(volume), albedo_(volume.albedo), emission_(volume.emission), uniform_(light_.uniform()) {}
 
   const MediumGrid& grid() const { return grid_; }
 
-  MediumLight light(const Ray& ray, const Interval& inside, const ReferenceOptions& options,
-                    std::vector<CellSpan>& spans) const {
-    MediumLight result;
-    if (uniform_) {
-      // A constant C leaves ∫ C dT: exact, since the optical depth is.
-      const double depth = grid_.optical_depth(ray.origin, ray.direction, inside);
-      result.transmittance = std::exp(-depth);
-      result.radiance = -std::expm1(-depth) * source_;
-      return result;
-    }
-    spans.clear();
-    grid_.trace(ray.origin, ray.direction, inside, spans);
-    if (spans.empty()) return result;
-    double depth = 0.0;
-    for (const CellSpan& span : spans)
-      depth += span.depth(1.0);
-    result.transmittance = std::exp(-depth);
-
-    const auto source = [&](double t) {
-      return medium_radiance(*scene_, ray.origin + t * ray.direction, albedo_, emission_);
-    };
-    const auto count = static_cast<double>(spans.size());
-    int parts = std::max(1, static_cast<int>(std::ceil(options.min_steps / count)));
-    result.radiance = integrate(spans, parts, source);
-    do {
-      parts *= 2;
-      const glm::dvec3 finer = integrate(spans, parts, source);
-      result.step_error = largest(glm::abs(finer - result.radiance));
-      result.radiance = finer;
-      result.converged = result.step_error < options.tolerance;
-    } while (!result.converged && 2.0 * parts * count <= options.max_steps);
-    return result;
-  }
+  // `scratch` spares an allocation for each ray.
+  struct Step;
+  MediumLight along(const Ray& ray, const Interval& inside, const ReferenceOptions& options,
+                    std::vector<Step>& scratch) const;
 
  private:
-  const Scene* scene_;
+  glm::dvec3 source(const glm::dvec3& point) const { return light_.medium_radiance(point, albedo_, emission_); }
+  glm::dvec3 integrate(const Ray& ray, const Step& step) const;
+
+  Illumination light_;
   MediumGrid grid_;
   glm::dvec3 albedo_, emission_;
   bool uniform_;
-  glm::dvec3 source_{0.0};
 };
+
+// A span, cut into equal parts, and what is known of its share of the pixel.
+struct Medium::Step {
+  CellSpan span;
+  double depth = 0.0;  // τ before the span
+  int parts = 1;
+  glm::dvec3 radiance{0.0};
+  double change = 0.0;  // by the last doubling of `parts`
+};
+
+// ∫ σ C T dt over a span with three-point Gauss–Legendre quadrature on each of its parts.
+glm::dvec3 Medium::integrate(const Ray& ray, const Step& step) const {
+  static const double offset = std::sqrt(0.15);
+  const std::array<double, 3> nodes = {0.5 - offset, 0.5, 0.5 + offset};
+  constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  const CellSpan& span = step.span;
+  glm::dvec3 sum(0.0);
+  for (int part = 0; part < step.parts; ++part) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double s = (part + nodes[i]) / step.parts;
+      const double absorbed = kWeights[i] * span.sigma(s) * std::exp(-step.depth - span.depth(s));
+      sum += absorbed * source(ray.origin + (span.begin_m + s * span.length_m) * ray.direction);
+    }
+  }
+  return sum * (span.length_m / step.parts);
+}
+
+MediumLight Medium::along(const Ray& ray, const Interval& inside, const ReferenceOptions& options,
+                          std::vector<Step>& steps) const {
+  MediumLight result;
+  if (uniform_) {
+    // A constant C leaves ∫ C dT: exact, since the optical depth is.
+    const double depth = grid_.optical_depth(ray.origin, ray.direction, inside);
+    result.transmittance = std::exp(-depth);
+    result.radiance = -std::expm1(-depth) * source(ray.origin);
+    return result;
+  }
+  steps.clear();
+  double depth = 0.0;
+  grid_.trace(ray.origin, ray.direction, inside, [&](const CellSpan& span) {
+    steps.push_back({span, depth, 1, glm::dvec3(0.0), 0.0});
+    depth += span.depth(1.0);
+  });
+  if (steps.empty()) return result;
+  result.transmittance = std::exp(-depth);
+
+  const auto count = static_cast<double>(steps.size());
+  const int least = std::max(1, static_cast<int>(std::ceil(options.min_steps / count)));
+  double total = 0.0;
+  const auto refine = [&](Step& step) {
+    total += step.parts;  // as many again
+    step.parts *= 2;
+    const glm::dvec3 finer = integrate(ray, step);
+    step.change = largest(glm::abs(finer - step.radiance));
+    step.radiance = finer;
+  };
+  for (Step& step : steps) {
+    step.parts = least;
+    total += least;
+    step.radiance = integrate(ray, step);
+    refine(step);
+  }
+  const auto error = [&] {
+    double sum = 0.0;
+    for (const Step& step : steps)
+      sum += step.change;
+    return sum;
+  };
+  // Where half the tolerance is left if all changed as little, a span needs no more parts.
+  const double negligible = 0.5 * options.tolerance / count;
+  for (result.step_error = error(); result.step_error >= options.tolerance; result.step_error = error()) {
+    double wanted = 0.0;
+    for (const Step& step : steps)
+      wanted += step.change > negligible ? step.parts : 0;
+    if (total + wanted > options.max_steps) break;
+    for (Step& step : steps) {
+      if (step.change > negligible) refine(step);
+    }
+  }
+  result.converged = result.step_error < options.tolerance;
+  for (const Step& step : steps)
+    result.radiance += step.radiance;
+  return result;
+}
 
 struct Errors {
   double max = 0.0;
@@ -138,7 +168,7 @@ Reference render_reference(const Scene& scene, const Camera& camera, const Surfa
   std::atomic<int> rows_done{0};
 
   tbb::parallel_for(tbb::blocked_range<int>(0, camera.height, 1), [&](const tbb::blocked_range<int>& rows) {
-    std::vector<CellSpan> spans;
+    std::vector<Medium::Step> steps;
     Errors& error = errors.local();
     for (int y = rows.begin(); y < rows.end(); ++y) {
       for (int x = 0; x < camera.width; ++x) {
@@ -152,7 +182,7 @@ Reference render_reference(const Scene& scene, const Camera& camera, const Surfa
               surfaces.distance_m[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)];
           const Interval inside = medium->grid().clip(ray.origin, ray.direction, {near_m, surface_m});
           inside_volume = inside.end > inside.begin;
-          if (inside_volume) light = medium->light(ray, inside, options, spans);
+          if (inside_volume) light = medium->along(ray, inside, options, steps);
         }
         float* pixel = result.image.at(x, y);
         double pixel_error = 0.0;

@@ -24,9 +24,9 @@ SurfaceLayer trace_surfaces(const Scene&, const Camera&);
 
 /// The density is a cubic of the distance between the planes of voxel centres that a ray crosses, so the optical depth
 /// is exact, and with directional and ambient light alone the radiance too. With point and spot lights each of these
-/// spans is cut into equal steps (three-point Gauss–Legendre quadrature) whose number is doubled.
+/// spans is cut into equal steps (three-point Gauss–Legendre quadrature), doubled where they still matter.
 struct ReferenceOptions {
-  /// Doubling ends when it changes no channel of the pixel by this much [radiance]. Not below the rounding of float64.
+  /// Doubling ends when the spans' changes sum to less than this in the pixel's worst channel [radiance].
   double tolerance = 1e-4;
   int min_steps = 64;  ///< along a ray, before the first doubling
   int max_steps =

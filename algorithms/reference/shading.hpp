@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include <glm/glm.hpp>
 
 #include "algorithms/scene/scene.hpp"
@@ -13,21 +16,31 @@ struct Incidence {
   glm::dvec3 to_light{0.0};    ///< unit
 };
 
-/// The share of a spot's intensity that reaches a direction whose angle to the axis has this cosine: 1 inside the inner
-/// cone, 0 outside the outer one, smoothstep of the cosine between.
-double spot_falloff(const Light&, double cosine);
+/// The lights of a scene, ready to be asked often. Keeps no reference to the scene.
+class Illumination {
+ public:
+  explicit Illumination(const Scene&);
 
-Incidence incidence(const Light&, const glm::dvec3& point);
+  std::size_t light_count() const { return lights_.size(); }
+  Incidence incidence(std::size_t light, const glm::dvec3& point) const;
 
-/// Radiance of a Lambertian surface: emission + albedo · (ambient + Σ E cos θ / π). `normal` unit, turned to the
-/// viewer.
-glm::dvec3 surface_radiance(const Scene&, const glm::dvec3& point, const glm::dvec3& normal, const glm::dvec3& albedo,
-                            const glm::dvec3& emission);
+  /// Radiance of a Lambertian surface: emission + albedo · (ambient + Σ E cos θ / π). `normal` unit, turned to the
+  /// viewer.
+  glm::dvec3 surface_radiance(const glm::dvec3& point, const glm::dvec3& normal, const glm::dvec3& albedo,
+                              const glm::dvec3& emission) const;
+  /// Source radiance of the medium, with isotropic single scattering: emission + albedo · (ambient + Σ E / 4π).
+  glm::dvec3 medium_radiance(const glm::dvec3& point, const glm::dvec3& albedo, const glm::dvec3& emission) const;
+  /// True if medium_radiance() is the same everywhere, because every light is directional.
+  bool uniform() const;
 
-/// Source radiance of the medium, with isotropic single scattering: emission + albedo · (ambient + Σ E / 4π).
-glm::dvec3 medium_radiance(const Scene&, const glm::dvec3& point, const glm::dvec3& albedo, const glm::dvec3& emission);
-
-/// True if medium_radiance() is the same everywhere, because every light is directional.
-bool uniform_source(const Scene&);
+ private:
+  struct Emitter {
+    LightKind kind;
+    glm::dvec3 position, direction, intensity;
+    double cos_inner, cos_outer;  // a spot's full cone, and where it reaches zero
+  };
+  std::vector<Emitter> lights_;
+  glm::dvec3 ambient_;
+};
 
 }  // namespace pellucid

@@ -150,7 +150,8 @@ glm::dvec3 interpolate(const std::vector<glm::vec3>& values, const Hit& hit) {
          hit.weights.z * glm::dvec3(values[hit.triangle.z]);
 }
 
-glm::dvec3 shade(const Scene& scene, const Hit& hit, const glm::dvec3& origin, const glm::dvec3& direction) {
+glm::dvec3 shade(const Scene& scene, const Illumination& light, const Hit& hit, const glm::dvec3& origin,
+                 const glm::dvec3& direction) {
   const Instance& instance = *hit.instance;
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
   const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
@@ -159,7 +160,7 @@ glm::dvec3 shade(const Scene& scene, const Hit& hit, const glm::dvec3& origin, c
   if (glm::dot(normal, direction) > 0.0) normal = -normal;
   glm::dvec3 albedo = glm::dvec3(material.albedo) * glm::dvec3(instance.tint);
   if (!mesh.colors.empty()) albedo *= interpolate(mesh.colors, hit);
-  return surface_radiance(scene, origin + hit.distance * direction, normal, albedo, glm::dvec3(material.emission));
+  return light.surface_radiance(origin + hit.distance * direction, normal, albedo, glm::dvec3(material.emission));
 }
 
 }  // namespace
@@ -167,6 +168,7 @@ glm::dvec3 shade(const Scene& scene, const Hit& hit, const glm::dvec3& origin, c
 SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera) {
   assert(camera.width > 0 && camera.height > 0);
   const Geometry geometry(scene);
+  const Illumination light(scene);
   SurfaceLayer layer;
   layer.radiance = Image(camera.width, camera.height, 3);
   layer.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
@@ -182,7 +184,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera) {
         const Hit hit = geometry.intersect(origin, direction, static_cast<double>(camera.view.near_m) * per_depth,
                                            static_cast<double>(camera.view.far_m) * per_depth);
         const glm::dvec3 radiance = hit.instance != nullptr
-                                        ? shade(scene, hit, origin, direction)
+                                        ? shade(scene, light, hit, origin, direction)
                                         : glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
         float* pixel = layer.radiance.at(x, y);
         for (int c = 0; c < 3; ++c)
