@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <limits>
-#include <memory>
 #include <new>
 #include <sstream>
 #include <string>
@@ -53,30 +53,88 @@ struct Counts {
   std::uint64_t faces = 0;
 };
 
-/// What the header of an OFF or PLY file claims. Importers allocate by it before they read on.
-Counts claimed_counts(const fs::path& path, const std::string& kind) {
-  std::ifstream file(path, std::ios::binary);
-  Counts counts;
-  std::string line;
-  for (int lines = 0; lines < 1000 && std::getline(file, line) && line.size() < 4096; ++lines) {
-    std::istringstream words(line);
-    std::string word;
-    if (kind == ".off") {
-      if (!(words >> word) || word.front() == '#') continue;
-      if (word.ends_with("OFF") && !(words >> word)) continue;
-      std::istringstream first(word);
-      if (first >> counts.vertices && words >> counts.faces) return counts;
-      throw unreadable(path, "malformed OFF header");
+/// The lines of a text file that are neither empty nor comments.
+class Lines {
+ public:
+  explicit Lines(const fs::path& path) : file_(path, std::ios::binary) {}
+  bool next() {
+    while (std::getline(file_, line_)) {
+      const auto first = line_.find_first_not_of(" \t\r");
+      if (first != std::string::npos && line_[first] != '#') return true;
     }
-    if (line.starts_with("end_header")) break;
-    std::uint64_t count = 0;
-    std::string element;
-    if (words >> word >> element >> count && word == "element") {
-      if (element == "vertex") counts.vertices = count;
-      if (element == "face") counts.faces = count;
-    }
+    return false;
   }
-  return counts;
+  const std::string& line() const { return line_; }
+
+ private:
+  std::ifstream file_;
+  std::string line_;
+};
+
+void check_counts(const fs::path& path, const Counts& claimed, std::uintmax_t bytes) {
+  if (claimed.faces > kMaxTriangles || claimed.vertices > 3 * kMaxTriangles) {
+    throw unreadable(path, fmt::format("{} vertices and {} faces; at most {} triangles are read", claimed.vertices,
+                                       claimed.faces, kMaxTriangles));
+  }
+  if (claimed.vertices + claimed.faces > bytes) {  // each takes a byte at the very least
+    throw unreadable(path, fmt::format("its header claims {} vertices and {} faces, more than {} bytes can hold",
+                                       claimed.vertices, claimed.faces, bytes));
+  }
+}
+
+/// Assimp allocates by what the header claims before it reads on.
+void check_ply(const fs::path& path, std::uintmax_t bytes) {
+  Counts counts;
+  Lines lines(path);
+  for (int n = 0; n < 1000 && lines.next() && !lines.line().starts_with("end_header"); ++n) {
+    std::istringstream words(lines.line());
+    std::string word;
+    std::string element;
+    std::uint64_t count = 0;
+    if (!(words >> word >> element >> count) || word != "element") continue;
+    if (element == "vertex") counts.vertices = count;
+    if (element == "face") counts.faces = count;
+  }
+  check_counts(path, counts, bytes);
+}
+
+/// Assimp also mends a face that names no vertex, and tells only its log.
+void check_off(const fs::path& path, std::uintmax_t bytes) {
+  Lines lines(path);
+  Counts counts;
+  std::istringstream words;
+  const auto next_line = [&] {
+    if (!lines.next()) return false;
+    words = std::istringstream(lines.line());
+    return true;
+  };
+  std::string keyword;
+  bool sound = next_line() && words >> keyword && keyword.ends_with("OFF");
+  sound = sound && (words >> counts.vertices || (next_line() && words >> counts.vertices)) && words >> counts.faces;
+  if (!sound) throw unreadable(path, "malformed OFF header");
+  check_counts(path, counts, bytes);
+  for (std::uint64_t v = 0; v < counts.vertices; ++v) {
+    if (!lines.next()) throw unreadable(path, fmt::format("it ends at vertex {} of {}", v, counts.vertices));
+  }
+  for (std::uint64_t f = 0; f < counts.faces; ++f) {
+    if (!lines.next()) throw unreadable(path, fmt::format("it ends at face {} of {}", f, counts.faces));
+    const char* at = lines.line().data();
+    const char* end = at + lines.line().size();
+    const auto read = [&](std::uint64_t& number) {
+      while (at != end && (*at == ' ' || *at == '\t'))
+        ++at;
+      const auto [past, error] = std::from_chars(at, end, number);
+      at = past;
+      return error == std::errc{};
+    };
+    std::uint64_t corners = 0;
+    bool good = read(corners);
+    for (std::uint64_t c = 0; good && c < corners; ++c) {
+      std::uint64_t vertex = 0;
+      good = read(vertex) && vertex < counts.vertices;
+    }
+    if (!good) throw unreadable(path, fmt::format("face {} names a vertex that does not exist", f));
+  }
 }
 
 void check_before_import(const fs::path& path, const std::string& kind) {
@@ -89,26 +147,19 @@ void check_before_import(const fs::path& path, const std::string& kind) {
   if (error) throw unreadable(path, error.message());
   if (bytes == 0) throw unreadable(path, "the file is empty");
   if (bytes > kMaxFileBytes) throw unreadable(path, fmt::format("{} bytes; at most {} are read", bytes, kMaxFileBytes));
-  if (kind != ".off" && kind != ".ply") return;
-  const Counts claimed = claimed_counts(path, kind);
-  if (claimed.faces > kMaxTriangles || claimed.vertices > 3 * kMaxTriangles) {
-    throw unreadable(path, fmt::format("{} vertices and {} faces; at most {} triangles are read", claimed.vertices,
-                                       claimed.faces, kMaxTriangles));
-  }
-  if (claimed.vertices + claimed.faces > bytes) {  // each takes a byte at the very least
-    throw unreadable(path, fmt::format("its header claims {} vertices and {} faces, more than {} bytes can hold",
-                                       claimed.vertices, claimed.faces, bytes));
-  }
+  if (kind == ".ply") check_ply(path, bytes);
+  if (kind == ".off") check_off(path, bytes);
 }
 
 /// Appends the triangles of `node` and of all below it.
 class Merger {
  public:
   Merger(const fs::path& path, const aiScene& scene, Mesh& mesh) : path_(path), scene_(scene), mesh_(mesh) {
-    all_colored_ = all_mapped_ = true;
+    all_colored_ = all_mapped_ = all_normals_ = true;
     for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
       all_colored_ = all_colored_ && scene.mMeshes[m]->HasVertexColors(0);
       all_mapped_ = all_mapped_ && scene.mMeshes[m]->HasTextureCoords(0);
+      all_normals_ = all_normals_ && scene.mMeshes[m]->HasNormals();
     }
   }
 
@@ -135,14 +186,14 @@ class Merger {
         throw unreadable(path_, fmt::format("vertex {} is not finite", v));
       }
       mesh_.positions.emplace_back(p.x, p.y, p.z);
-      aiVector3D n = source.HasNormals() ? normal_to_mesh * source.mNormals[v] : aiVector3D(0, 1, 0);
-      const float length = n.Length();
-      // A vertex of degenerate triangles only has no normal, and is never seen.
-      if (std::isfinite(length) && length > 0)
-        n /= length;
-      else
-        n = aiVector3D(0, 1, 0);
-      mesh_.normals.emplace_back(n.x, n.y, n.z);
+      if (all_normals_) {
+        const aiVector3D n = normal_to_mesh * source.mNormals[v];
+        const float length = n.Length();
+        if (!std::isfinite(length) || !(length > 0)) {
+          throw unreadable(path_, fmt::format("the normal of vertex {} has no direction", v));
+        }
+        mesh_.normals.emplace_back(n.x / length, n.y / length, n.z / length);
+      }
       if (all_colored_) {
         const aiColor4D& c = source.mColors[0][v];
         mesh_.colors.emplace_back(c.r, c.g, c.b);
@@ -162,7 +213,7 @@ class Merger {
   const fs::path& path_;
   const aiScene& scene_;
   Mesh& mesh_;
-  bool all_colored_ = false, all_mapped_ = false;
+  bool all_colored_ = false, all_mapped_ = false, all_normals_ = false;
 };
 
 }  // namespace
@@ -177,9 +228,8 @@ MeshFile load_mesh_file(const fs::path& path, double crease_deg) {
     Assimp::Importer importer;
     importer.SetIOHandler(new NotingFiles(result.files));  // NOLINT: the importer owns it
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, static_cast<float>(crease_deg));
     const aiScene* scene =
-        importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
+        importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType |
                                              aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure);
     if (scene == nullptr) throw unreadable(path, importer.GetErrorString());
     if (scene->mRootNode == nullptr) throw unreadable(path, "it has no triangles");
@@ -188,6 +238,7 @@ MeshFile load_mesh_file(const fs::path& path, double crease_deg) {
     throw unreadable(path, "not enough memory");
   }
   if (result.mesh.triangles.empty()) throw unreadable(path, "it has no triangles");
+  if (result.mesh.normals.empty()) make_normals(result.mesh, crease_deg);
   return result;
 }
 

@@ -20,6 +20,10 @@ struct MeshFile {
 /// malformed, or more than kMaxTriangles.
 MeshFile load_mesh_file(const std::filesystem::path&, double crease_deg);
 
+/// Gives the mesh normals: at each corner the mean, weighted by area, of the triangles around that point that meet the
+/// corner's own at less than `crease_deg`. Vertices are split where that differs.
+void make_normals(Mesh&, double crease_deg);
+
 /// Scales the mesh so that its longest side is `size_m`, and centres its bounds on the origin.
 void fit_mesh(Mesh&, double size_m);
 

@@ -10,9 +10,16 @@
 
 namespace pellucid {
 
+namespace {
+
+Place begin_of(const toml::source_region& region) {
+  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+}  // namespace
+
 Place place_of(const toml::node& node) {
-  const toml::source_position at = node.source().begin;
-  return {static_cast<int>(at.line), static_cast<int>(at.column)};
+  return begin_of(node.source());
 }
 
 InputError SceneFile::error(Place place, std::string_view message) const {
@@ -89,8 +96,18 @@ const toml::node* TableReader::find(std::string_view key, Need need) {
 
 void TableReader::require(std::string_view key) {
   if (table_->contains(key)) return;
-  fail(place_of_table(),
-       path_.empty() ? fmt::format("'{}' is missing", key) : fmt::format("'{}' is missing in {}", key, path_));
+  const std::string missing =
+      path_.empty() ? fmt::format("'{}' is missing", key) : fmt::format("'{}' is missing in {}", key, path_);
+  // Most likely it is there with a typing error. Short names all look alike.
+  std::vector<std::string> others;
+  for (auto&& [other, node] : *table_) {
+    if (other.str().size() >= 4) others.emplace_back(other.str());
+  }
+  const std::string near = nearest_name(key, others);
+  if (near.empty()) fail(place_of_table(), missing);
+  for (auto&& [other, node] : *table_) {
+    if (other.str() == near) fail(begin_of(other.source()), fmt::format("{}; is it '{}'?", missing, near));
+  }
 }
 
 void TableReader::exclude(std::string_view key, std::string_view other) {
@@ -249,11 +266,10 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(std::
   const std::optional<TableReader> outer = table(key);
   if (!outer) return result;
   for (auto&& [name, node] : *outer->table_) {
-    const toml::source_position at = name.source().begin;
-    const Place name_place{static_cast<int>(at.line), static_cast<int>(at.column)};
     if (!is_name(name.str())) {
-      fail(name_place, fmt::format("'{}' is not a name: use lower-case letters, digits and underscores, a letter first",
-                                   name.str()));
+      fail(begin_of(name.source()),
+           fmt::format("'{}' is not a name: use lower-case letters, digits and underscores, a letter first",
+                       name.str()));
     }
     const toml::table* inner = node.as_table();
     if (inner == nullptr) fail(place_of(node), wrong_type(outer->dotted(name.str()), "a table", node));
@@ -286,11 +302,9 @@ void TableReader::finish() {
   for (auto&& [key, node] : *table_) {
     if (std::find(asked_.begin(), asked_.end(), key.str()) != asked_.end()) continue;
     const std::string near = nearest_name(key.str(), asked_);
-    const toml::source_position at = key.source().begin;
-    fail(Place{static_cast<int>(at.line), static_cast<int>(at.column)},
-         fmt::format("unknown key '{}'{}; {}", key.str(), path_.empty() ? "" : " in " + path_,
-                     near.empty() ? fmt::format("known are {}", fmt::join(asked_, ", "))
-                                  : fmt::format("did you mean '{}'?", near)));
+    fail(begin_of(key.source()), fmt::format("unknown key '{}'{}; {}", key.str(), path_.empty() ? "" : " in " + path_,
+                                             near.empty() ? fmt::format("known are {}", fmt::join(asked_, ", "))
+                                                          : fmt::format("did you mean '{}'?", near)));
   }
 }
 
