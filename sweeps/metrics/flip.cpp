@@ -1,9 +1,7 @@
 #include "sweeps/metrics/flip.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <cstring>
 
 #include <fmt/format.h>
 
@@ -12,6 +10,7 @@
 #include "sweeps/metrics/pixels.hpp"
 
 namespace pellucid::sweeps {
+
 Exposures automatic_exposures(const Image& reference) {
   check_pixels(reference, "reference");
   std::vector<double> luminance;

@@ -18,16 +18,18 @@ namespace pellucid::sweeps {
 // Image metrics of a test t against a reference r (references.bib: wang2004, rousselle2011, vogels2018). An image has 1
 // (grey, used for R, G and B), 3 or 4 channels; alpha is not compared. Means go over the pixels and R, G, B.
 //
-//   name    value                                                   scene-linear (EXR)             display-encoded
-//   (PNG) mse     mean (t - r)^2                                          radiance                       encoded, [0,
-//   1] rmse    sqrt(mse)                                               "                              " relmse  mean (t
-//   - r)^2 / (r^2 + 0.01)        [rousselle2011]    "                              " mae     mean |t - r| " " smape
-//   mean |t - r| / (|t| + |r| + 0.01)    [vogels2018]       "                              " psnr    10 log10(peak^2 /
-//   mse), dB                              peak: largest R, G, B of the   peak 1
-//                                                                   reference (1 if that is <= 0)
-//   ssim    mean SSIM of the luma                [wang2004]         clamped to [0, 1] at exposure  as it is; range 1
-//                                                                   0 and sRGB-encoded; range 1
-//   flip    FLIP, pooled (sweeps/metrics/flip.hpp)                  HDR-FLIP                       LDR-FLIP
+//   mse     mean (t - r)^2
+//   rmse    sqrt(mse)
+//   relmse  mean (t - r)^2 / (r^2 + 0.01), after rousselle2011
+//   mae     mean |t - r|
+//   smape   mean |t - r| / (|t| + |r| + 0.01), after vogels2018
+//   psnr    10 log10(peak^2 / mse), in dB
+//   ssim    mean SSIM of the luma, after wang2004
+//   flip    FLIP, pooled: mean, weighted median and quartiles, min, max (sweeps/metrics/flip.hpp)
+//
+// Scene-linear images (EXR): errors are of radiance; the peak of psnr is the largest R, G or B of the reference (1 if that
+// is not above 0); ssim is of the image clamped to [0, 1] and sRGB-encoded; flip is HDR-FLIP.
+// Display-encoded images (PNG): errors are of the encoded values in [0, 1]; the peak is 1; flip is LDR-FLIP.
 //
 // The luma is 0.2126 R' + 0.7152 G' + 0.0722 B'. SSIM uses an 11x11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03,
 // and averages over the windows that lie wholly inside the frame; a smaller frame is an error. The PSNR of identical
@@ -63,8 +65,8 @@ struct ComparisonOptions {
 };
 
 struct ComparisonResult {
-  std::vector<std::pair<std::string, double>>
-      values;      ///< in the order of MetricSet::columns; finite, but for psnr = +inf
+  /// In the order of MetricSet::columns; finite, but for psnr = +inf.
+  std::vector<std::pair<std::string, double>> values;
   Image flip_map;  ///< one channel; empty unless keep_map
 
   /// Throws std::out_of_range for a name that is not there.
