@@ -27,9 +27,9 @@ namespace pellucid::sweeps {
 //   ssim    mean SSIM of the luma, after wang2004
 //   flip    FLIP, pooled: mean, weighted median and quartiles, min, max (sweeps/metrics/flip.hpp)
 //
-// Scene-linear images (EXR): errors are of radiance; the peak of psnr is the largest R, G or B of the reference (1 if that
-// is not above 0); ssim is of the image clamped to [0, 1] and sRGB-encoded; flip is HDR-FLIP.
-// Display-encoded images (PNG): errors are of the encoded values in [0, 1]; the peak is 1; flip is LDR-FLIP.
+// Scene-linear images (EXR): errors are of radiance; the peak of psnr is the largest R, G or B of the reference (1 if
+// that is not above 0); ssim is of the image clamped to [0, 1] and sRGB-encoded; flip is HDR-FLIP. Display-encoded
+// images (PNG): errors are of the encoded values in [0, 1]; the peak is 1; flip is LDR-FLIP.
 //
 // The luma is 0.2126 R' + 0.7152 G' + 0.0722 B'. SSIM uses an 11x11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03,
 // and averages over the windows that lie wholly inside the frame; a smaller frame is an error. The PSNR of identical
