@@ -62,8 +62,8 @@ std::vector<float> make_fog_density(const glm::ivec3& size, const FogOptions& op
     }
     const float layer = std::exp(-options.height_falloff * v);
     for (float& value : row) {
-      // Octaves rarely add up: two thirds of the bound already count as thickest or thinnest.
-      const float thickness = std::clamp(0.5F + 0.75F * value / total, 0.0F, 1.0F);
+      // Octaves rarely add up: half of the bound already counts as thickest or thinnest.
+      const float thickness = std::clamp(0.5F + value / total, 0.0F, 1.0F);
       value = layer * (1.0F - options.contrast * (1.0F - thickness));
     }
   });

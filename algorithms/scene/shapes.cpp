@@ -84,7 +84,9 @@ Mesh make_sphere(float radius, int segments) {
       const Direction d = around(column, segments);
       const glm::vec3 normal(ring * d.cosine, y, -ring * d.sine);
       // At a pole each triangle has its own vertex, halfway between its neighbours in u.
-      const float u = pole ? share(2 * column + 1, 2 * segments) : share(column, segments);
+      const int shift = row == 0 ? 1 : -1;
+      const float u =
+          pole ? share(std::clamp(2 * column + shift, 0, 2 * segments), 2 * segments) : share(column, segments);
       add_vertex(mesh, radius * normal, normal, {u, share(row, rows)});
     }
   }
@@ -161,7 +163,7 @@ Mesh make_cone(float radius, float height, int segments) {
     const Direction d = around(column, segments);
     add_vertex(mesh, {radius * d.cosine, 0.0F, -radius * d.sine}, side_normal(d), {share(column, segments), 0.0F});
   }
-  for (int column = 0; column <= segments; ++column) {
+  for (int column = 0; column < segments; ++column) {
     add_vertex(mesh, {0.0F, height, 0.0F}, side_normal(around(2 * column + 1, 2 * segments)),
                {share(2 * column + 1, 2 * segments), 1.0F});
   }
