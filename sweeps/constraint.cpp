@@ -89,9 +89,9 @@ bool Expression::holds(const std::map<std::string, double>& values) {
   } catch (const mu::ParserError& e) {
     throw parse_failure(s.text, e);
   }
-  if (result != 0 && result != 1) {  // NaN too
-    throw InputError(fmt::format(
-        "constraint '{}' gives {}, neither true nor false; compare with <=, <, ==, !=, >, >=", s.text, result));
+  if (result != 0 && result != 1) {  // NaN too, whose sign is of no interest
+    throw InputError(fmt::format("constraint '{}' gives {}, neither true nor false; compare with <=, <, ==, !=, >, >=",
+                                 s.text, std::isnan(result) ? "nan" : fmt::format("{}", result)));
   }
   return result == 1;
 }

@@ -22,7 +22,9 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path) {
     return;
   }
   if (!exists) throw InputError(fmt::format("store '{}' does not exist", path.string()));
-  open(path.string(), SQLITE_OPEN_READONLY);
+  // Able to write where it may, so that the last to close tidies the log away; the rows are safe from it.
+  open(path.string(), SQLITE_OPEN_READWRITE);
+  sqlite3_exec(handle_, "PRAGMA query_only = 1", nullptr, nullptr, nullptr);
   // A WAL database in a folder that cannot be written gets no shared memory; without a log there is nothing to share.
   const int code = sqlite3_exec(handle_, "SELECT count(*) FROM sqlite_master", nullptr, nullptr, nullptr);
   if (code == SQLITE_OK) return;

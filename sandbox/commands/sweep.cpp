@@ -157,8 +157,9 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
   if (summary.failed > 0) add(fmt::format("{} failed", summary.failed));
   if (summary.left > 0) add(fmt::format("{} left", summary.left));
   if (summary.baseline_drift) add(fmt::format("baseline drift at most {:.1f} %", 100 * *summary.baseline_drift));
-  fmt::print(stderr, "{}{}: {} points: {}; {} in {}\n", summary.interrupted ? "interrupted: " : "", spec.name,
-             summary.planned, line, duration_text(summary.wall_s), arguments.store);
+  const bool worked = summary.measured + summary.failed > 0;
+  fmt::print(stderr, "{}{}: {} points: {}{} in {}\n", summary.interrupted ? "interrupted: " : "", spec.name,
+             summary.planned, line, worked ? fmt::format("; {}", duration_text(summary.wall_s)) : "", arguments.store);
   if (summary.left > 0) fmt::print(stderr, "the same command goes on where this one stopped\n");
   return summary.interrupted || summary.failed > 0 ? kFailed : kDone;
 }

@@ -13,6 +13,7 @@
 
 #include "gl/error.hpp"
 #include "sweeps/run.hpp"
+#include "sweeps/worker.hpp"
 #include "sweeps/worker_protocol.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
@@ -108,6 +109,7 @@ std::string fake_spec(int points, int sleep, int frames) {
 int run_role(const std::vector<std::string>& arguments) {
   const std::string& role = arguments.at(0);
   if (role == "fake-worker") return fake_worker(arguments.at(1), arguments.at(2));
+  if (role == "real-worker") return run_worker(std::nullopt);
   if (role == "dead-worker") {
     std::cerr << "error: no GL device" << std::endl;
     return 1;

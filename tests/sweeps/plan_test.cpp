@@ -65,10 +65,12 @@ TEST(Plan, WrongConstraintsNameThePlace) {
   EXPECT_EQ(error("hulls * 3"),
             "s.toml:6:25: constraint 'hulls * 3' gives 12, neither true nor false; compare with <=, <, ==, !=, >, >=");
   EXPECT_EQ(error("hulls = 3"), "s.toml:6:25: constraint 'hulls = 3': '=' assigns; compare with '=='");
-  EXPECT_EQ(error("0 / 0 * hulls").substr(0, 49), "s.toml:6:25: constraint '0 / 0 * hulls' gives nan,");
-  EXPECT_EQ(error("hulls < ").substr(0, 36), "s.toml:6:25: constraint 'hulls < ': ");
+  EXPECT_TRUE(error("0 / 0 * hulls").starts_with("s.toml:6:25: constraint '0 / 0 * hulls' gives nan,"))
+      << error("0 / 0 * hulls");
+  EXPECT_TRUE(error("hulls < ").starts_with("s.toml:6:25: constraint 'hulls < ': ")) << error("hulls < ");
   EXPECT_EQ(error("hulls < 3, 1 < 2"), "s.toml:6:25: constraint 'hulls < 3, 1 < 2': more than one expression");
-  EXPECT_EQ(error("format == 1").substr(0, 55), "s.toml:6:25: constraint 'format == 1': unknown name 'fo");
+  EXPECT_TRUE(error("format == 1").starts_with("s.toml:6:25: constraint 'format == 1': unknown name 'fo"))
+      << error("format == 1");
   EXPECT_EQ(error("hulls > 99"), "s.toml:6:16: the constraints leave no point in block 'r'");
 }
 

@@ -1,0 +1,145 @@
+#include "sweeps/measure.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "gl/context.hpp"
+#include "gl/error.hpp"
+#include "sweeps/run.hpp"
+#include "sweeps/store.hpp"
+#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_worker.hpp"
+
+// With the real techniques and scenes, on whatever GL there is.
+namespace pellucid::sweeps {
+namespace {
+
+using nlohmann::json;
+using test::TemporaryFolder;
+
+const char* const kSpec = R"(
+name = "real"
+metrics = ["rmse", "psnr", "ssim", "flip"]
+[timing]
+min_samples = 3
+max_samples = 4
+[reference]
+tolerance = 1e-3
+[[run]]
+name = "hulls"
+techniques = ["sampling_hulls"]
+scenes = ["homogeneous_fog"]
+sizes = ["48x36"]
+baseline = true
+[run.axes]
+hulls = [1, 3]
+scene.density = [0.5, 1.0]
+[[run]]
+name = "slices"
+techniques = ["volume_slices"]
+scenes = ["homogeneous_fog"]
+sizes = ["64x48"]
+timing.enabled = false
+[run.fixed]
+slices = 7
+frame.format = "single"
+)";
+
+TEST(Worker, MeasuresWhatTheContractNames) {
+  const TemporaryFolder folder;
+  const Spec spec = parse_spec(kSpec, "real.toml");
+  RunOptions options;
+  options.worker = test::self({"real-worker"});
+  options.quiet = true;
+  const SweepSummary summary = run_sweep(spec, folder / "s.db", options);
+  EXPECT_EQ(summary.measured, 5U);
+  const std::vector<json> rows = read_rows(folder / "s.db", true);
+  ASSERT_EQ(rows.size(), 5U);
+  for (const json& row : rows) {
+    EXPECT_EQ(row.at("status"), "ok") << row.at("failure");
+    for (const char* name : {"rmse", "ssim", "flip_mean", "flip_weighted_median", "flip_weighted_q1",
+                             "flip_weighted_q3", "flip_max", "reference_step_error_max", "reference_step_error_mean",
+                             "prepare_s", "gpu_bytes", "peak_rss_bytes", "wall_s"}) {
+      EXPECT_TRUE(row.at(name).is_number()) << name;
+    }
+    EXPECT_GT(row.at("gpu_bytes"), 0);
+    EXPECT_GT(row.at("peak_rss_bytes"), 1 << 20);
+    EXPECT_LT(row.at("rmse"), 0.2);
+    EXPECT_EQ(row.at("scene_hash").get<std::string>().size(), 64U);
+    EXPECT_FALSE(row.at("device").get<std::string>().empty());
+    EXPECT_TRUE(row.contains("scene.density"));
+  }
+  const json& timed = rows[0];
+  EXPECT_EQ(timed.at("hulls"), 1);
+  EXPECT_GT(timed.at("frame_ms_median"), 0);
+  EXPECT_LE(timed.at("frame_ms_ci95_low"), timed.at("frame_ms_median"));
+  EXPECT_GE(timed.at("frame_ms_ci95_high"), timed.at("frame_ms_median"));
+  EXPECT_EQ(timed.at("frames"), timed.at("frame_ms_samples").size());
+  EXPECT_GE(timed.at("frames"), 3);
+  EXPECT_LE(timed.at("frames"), 4);
+  EXPECT_FALSE(timed.at("pass_ms").empty());
+  EXPECT_TRUE(timed.at("baseline_drift").is_number());
+  EXPECT_NE(rows[0].at("scene_hash"), rows[1].at("scene_hash"));  // of the scene at these values
+  EXPECT_EQ(rows[0].at("scene_hash"), rows[2].at("scene_hash"));
+
+  const json& untimed = rows[4];
+  EXPECT_EQ(untimed.at("timing"), "off");
+  EXPECT_FALSE(untimed.contains("frame_ms_median"));
+  EXPECT_EQ(untimed.at("frame.format"), "single");
+  EXPECT_EQ(untimed.at("slices"), 7);
+  EXPECT_EQ(untimed.at("frame_ms_samples").size(), 0U);
+}
+
+class MeasurerTest : public testing::Test {
+ protected:
+  Point point(std::size_t index) const { return plan.points.at(index); }
+  double rmse(Measurer& measurer, const Point& p) { return measurer.measure(p, folder / "references").row.at("rmse"); }
+  static Measurer make() {
+    return Measurer([](const char*, double) {});
+  }
+  gl::Context context;
+  TemporaryFolder folder;
+  Plan plan = make_plan(parse_spec(kSpec, "real.toml"));
+};
+
+TEST_F(MeasurerTest, APointDoesNotDependOnThoseBefore) {
+  std::vector<double> alone;
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    Measurer fresh = make();
+    alone.push_back(rmse(fresh, point(i)));
+  }
+  EXPECT_NE(alone[0], alone[1]);
+  EXPECT_NE(alone[0], alone[2]);
+  Measurer shared = make();
+  for (const std::size_t i : {3U, 0U, 4U, 1U, 2U, 0U, 3U})
+    EXPECT_EQ(rmse(shared, point(i)), alone[i]) << i;
+}
+
+TEST_F(MeasurerTest, ADamagedReferenceIsTracedAgain) {
+  Measurer first = make();
+  const double before = rmse(first, point(0));
+  std::size_t files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "references")) {
+    std::filesystem::resize_file(file.path(), 500);
+    ++files;
+  }
+  EXPECT_EQ(files, 1U);
+  Measurer second = make();
+  EXPECT_EQ(rmse(second, point(0)), before);
+  for (const auto& file : std::filesystem::directory_iterator(folder / "references"))
+    EXPECT_GT(file.file_size(), 500U);
+}
+
+TEST_F(MeasurerTest, GoesOnAfterAPointThatCannotBeMeasured) {
+  Measurer measurer = make();
+  const double before = rmse(measurer, point(0));
+  Point bad = point(0);
+  bad.view = "no_such_view";
+  EXPECT_THROW(measurer.measure(bad, folder / "references"), InputError);
+  EXPECT_EQ(rmse(measurer, point(0)), before);
+}
+
+}  // namespace
+}  // namespace pellucid::sweeps
