@@ -131,4 +131,40 @@ BoxPieces cut_slices(const BoxDepth& box, const DepthRange& range, int slices) {
   return out;
 }
 
+ObjectSlices cut_object_slices(const glm::mat4& to_world, const glm::mat4& world_to_view, const glm::vec3& eye,
+                               int slices) {
+  const glm::vec3 view_axis = -glm::vec3(world_to_view[0].z, world_to_view[1].z, world_to_view[2].z);
+  // The slices' normals are the rows of the inverse: the box may be sheared or scaled.
+  const glm::mat4 to_local = glm::inverse(to_world);
+  auto normal = [&](int k) { return glm::vec3(to_local[0][k], to_local[1][k], to_local[2][k]); };
+  int across = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(glm::dot(glm::normalize(normal(k)), view_axis)) >
+        std::abs(glm::dot(glm::normalize(normal(across)), view_axis))) {
+      across = k;
+    }
+  }
+  ObjectSlices out;
+  out.axis = glm::normalize(normal(across));
+  out.slab_m = 1 / (glm::length(normal(across)) * static_cast<float>(slices));
+  out.polygons.pieces.push_back({});
+  const double eye_at = (to_local * glm::vec4(eye, 1.0F))[across];
+  auto add = [&](int i) {
+    Polygon polygon(4, glm::vec3(static_cast<float>((i + 0.5) / slices)));
+    for (int c = 0; c < 4; ++c) {
+      polygon[static_cast<std::size_t>(c)][(across + 1) % 3] = c == 1 || c == 2 ? 1.0F : 0.0F;
+      polygon[static_cast<std::size_t>(c)][(across + 2) % 3] = c >= 2 ? 1.0F : 0.0F;
+    }
+    append(out.polygons, polygon, false);
+  };
+  int below = 0;  // slices before the eye along the edge
+  while (below < slices && (below + 0.5) / slices < eye_at)
+    ++below;
+  for (int i = 0; i < below; ++i)
+    add(i);
+  for (int i = slices - 1; i >= below; --i)
+    add(i);
+  return out;
+}
+
 }  // namespace pellucid

@@ -48,4 +48,14 @@ BoxPieces cut_hulls(const BoxDepth&, const DepthRange&, int hulls);
 /// One piece: `slices` polygons, each in the middle of its slab of equal thickness, farthest first.
 BoxPieces cut_slices(const BoxDepth&, const DepthRange&, int slices);
 
+/// Slices across the box's edge direction nearest to the viewing axis. Those on either side of the eye come from the
+/// outside in, which is back to front for every ray.
+struct ObjectSlices {
+  BoxPieces polygons;    ///< one piece
+  glm::vec3 axis{0.0F};  ///< unit normal of the slices, in the world
+  float slab_m = 0;      ///< thickness that a slice stands for, along `axis`
+};
+ObjectSlices cut_object_slices(const glm::mat4& to_world, const glm::mat4& world_to_view, const glm::vec3& eye,
+                               int slices);
+
 }  // namespace pellucid

@@ -27,9 +27,7 @@ struct LightBlock {
 }  // namespace
 
 ForwardPass::ForwardPass(const Scene& scene)
-    : lights_("lights", sizeof(LightBlock), GL_DYNAMIC_DRAW),
-      opaque_("opaque", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/shaders/common/opaque.frag.glsl"}),
-      fullscreen_("fullscreen") {
+    : lights_("lights", sizeof(LightBlock), GL_DYNAMIC_DRAW), fullscreen_("fullscreen") {
   upload_meshes(scene);
   upload_instances(scene);
   upload_lights(scene);
@@ -100,6 +98,7 @@ void ForwardPass::upload_instances(const Scene& scene) {
 void ForwardPass::upload_lights(const Scene& scene) {
   LightBlock block{};
   uniform_lighting_ = true;
+  shadowed_ = false;
   auto cosine = [](float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); };
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -107,9 +106,34 @@ void ForwardPass::upload_lights(const Scene& scene) {
                        glm::vec4(light.direction, cosine(light.outer_angle_deg)),
                        glm::vec4(light.intensity, cosine(light.inner_angle_deg))};
     uniform_lighting_ = uniform_lighting_ && light.kind == LightKind::directional;
+    shadowed_ = shadowed_ || light.casts_shadow;
   }
   block.ambient_count = glm::vec4(scene.ambient, static_cast<float>(scene.lights.size()));
   lights_.upload(std::span<const LightBlock>(&block, 1));
+  compile();
+}
+
+void ForwardPass::compile() {
+  const gl::Defines defines = shadowed_ ? gl::Defines{{"SHADOWS", "1"}} : gl::Defines{};
+  if (opaque_ && defines == opaque_defines_) return;
+  opaque_ = gl::Program(
+      "opaque", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/shaders/common/opaque.frag.glsl"}, defines);
+  opaque_defines_ = defines;
+}
+
+void ForwardPass::update_shadows(const Scene& scene, const ShadowSettings& settings) {
+  if (!shadowed_) return;
+  if (settings.refresh == ShadowRefresh::changed && shadow_revision_ == revision_) return;
+  shadows_.update(scene, settings, [&](const glm::mat4& world_to_clip, const gl::Program& program) {
+    draw_geometry(world_to_clip, program);
+  });
+  shadow_revision_ = revision_;
+}
+
+gl::Defines ForwardPass::light_defines() const {
+  if (shadowed_) return {{"SHADOWS", "1"}};
+  if (uniform_lighting_) return {{"UNIFORM_SOURCE", "1"}};
+  return {};
 }
 
 void ForwardPass::upload_environment(const Scene& scene) {
@@ -188,6 +212,10 @@ void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
 }
 
 void ForwardPass::draw_geometry(const Camera& camera, const gl::Program& program) const {
+  draw_geometry(camera.projection() * camera.world_to_view(), program);
+}
+
+void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Program& program) const {
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
@@ -196,12 +224,12 @@ void ForwardPass::draw_geometry(const Camera& camera, const gl::Program& program
   const float far_depth = 1.0F;
   glClearBufferfv(GL_DEPTH, 0, &far_depth);
   program.use();
-  program.set("world_to_clip", camera.projection() * camera.world_to_view());
+  program.set("world_to_clip", world_to_clip);
   draw_batches();
 }
 
 std::string ForwardPass::reload_shaders() {
-  return opaque_.reload() + background_.reload();
+  return opaque_.reload() + background_.reload() + shadows_.reload_shaders();
 }
 
 }  // namespace pellucid

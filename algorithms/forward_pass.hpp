@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "algorithms/scene/scene.hpp"
+#include "algorithms/shadow_maps.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 
@@ -24,11 +27,17 @@ class ForwardPass {
   /// Opaque objects only, with another fragment shader behind `opaque.vert.glsl`; sets its uniform `world_to_clip`,
   /// clears and writes depth.
   void draw_geometry(const Camera&, const gl::Program&) const;
+  void draw_geometry(const glm::mat4& world_to_clip, const gl::Program&) const;
 
-  /// Binds the lights' uniform block (binding 0 of lighting.glsl).
+  /// Draws the shadow maps of the lights that cast shadows, unless the settings allow keeping those of the last frame.
+  void update_shadows(const Scene&, const ShadowSettings&);
+  bool shadowed() const { return shadowed_; }
+
+  /// Binds what lighting.glsl and shadows.glsl read: the lights' uniform block, and shadow maps where there are any.
   void bind_lights() const;
-  /// True if no light's irradiance depends on the place.
-  bool uniform_lighting() const { return uniform_lighting_; }
+  /// The defines that a program which includes them must be compiled with: SHADOWS where a light casts shadows, or
+  /// UNIFORM_SOURCE where no light's irradiance depends on the place.
+  gl::Defines light_defines() const;
   std::string reload_shaders();
 
  private:
@@ -42,6 +51,7 @@ class ForwardPass {
   void upload_instances(const Scene&);
   void upload_lights(const Scene&);
   void upload_environment(const Scene&);
+  void compile();
   void draw_batches() const;
 
   std::vector<Batch> batches_;
@@ -50,6 +60,10 @@ class ForwardPass {
   Environment gradient_;
   bool uniform_lighting_ = true;
   std::uint64_t revision_ = 0;
+  ShadowMaps shadows_;
+  std::optional<std::uint64_t> shadow_revision_;
+  bool shadowed_ = false;  // some light casts shadows
+  gl::Defines opaque_defines_;
   gl::Program opaque_, background_;
   gl::VertexArray fullscreen_;
 };

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/ray_marching/ray_marching.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/technique.hpp"
 #include "algorithms/volume_slices/volume_slices.hpp"
@@ -15,7 +16,10 @@ static const std::array kTechniques{
     TechniqueInfo{"sampling_hulls", "Sampling hulls", "imagire2007", false,
                   "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
                   sampling_hulls::table, sampling_hulls::make},
-    TechniqueInfo{"volume_slices", "Image-aligned slices", "cullip1994", true,
+    TechniqueInfo{"ray_marching", "Ray marching", "kruger2003", true,
+                  "the volume in one pass, N points on each ray, with interleaved jitter if wanted",
+                  ray_marching::table, ray_marching::make},
+    TechniqueInfo{"volume_slices", "Slices", "cullip1994", true,
                   "the slice-based baseline: one plane a step, blended back to front", volume_slices::table,
                   volume_slices::make},
 };

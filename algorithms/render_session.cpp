@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::string_view kScenePrefix = "scene.";
 constexpr std::string_view kFramePrefix = "frame.";
+constexpr std::string_view kShadowPrefix = "shadow.";
 
 nlohmann::json to_json(const Value& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
@@ -39,6 +40,7 @@ struct RenderSession::State {
   const TechniqueInfo* info;
   std::unique_ptr<Technique> technique;
   FrameSettings frame;
+  ShadowSettings shadow;
   Camera camera;
   ForwardPass forward;
   gl::Texture color, depth;
@@ -58,6 +60,10 @@ struct RenderSession::State {
     if (name.starts_with(kFramePrefix)) {
       name.remove_prefix(kFramePrefix.size());
       return {bind_parameters(frame), "frame"};
+    }
+    if (name.starts_with(kShadowPrefix)) {
+      name.remove_prefix(kShadowPrefix.size());
+      return {bind_parameters(shadow), "shadow"};
     }
     return {technique->parameters(), std::string(info->name)};
   }
@@ -107,6 +113,7 @@ nlohmann::json RenderSession::parameters() const {
   add("", state_->technique->parameters());
   add(kScenePrefix, state_->scene.parameters());
   add(kFramePrefix, bind_parameters(state_->frame));
+  add(kShadowPrefix, bind_parameters(state_->shadow));
   return all;
 }
 
@@ -142,6 +149,10 @@ void RenderSession::render(gl::PassTimer& timer) {
   State& s = *state_;
   s.fit_target();
   timer.begin_frame();
+  if (s.forward.shadowed()) {
+    auto pass = timer.pass("shadow maps");
+    s.forward.update_shadows(s.scene, s.shadow);
+  }
   s.technique->render(s.scene, s.camera, s.forward, Target{s.color, s.depth, s.framebuffer}, timer);
   timer.end_frame();
   gl::check("render", s.info->name);
@@ -155,6 +166,7 @@ Image RenderSession::read_color() const {
 SurfaceLayer RenderSession::raster_surfaces() {
   State& s = *state_;
   s.forward.update(s.scene);
+  s.forward.update_shadows(s.scene, s.shadow);
   const int width = s.camera.width, height = s.camera.height;
   const gl::Texture radiance = gl::Texture::make_2d("surface radiance", gl::Format::rgba32f, width, height);
   const gl::Texture distance = gl::Texture::make_2d("surface distance", gl::Format::r32f, width, height);

@@ -36,7 +36,7 @@ class RenderSession {
   RenderSession(RenderSession&&) noexcept;
   RenderSession& operator=(RenderSession&&) noexcept;
 
-  /// `name` is a technique's parameter, `scene.…` or `frame.…`. Throws InputError.
+  /// `name` is a technique's parameter, `scene.…`, `frame.…` or `shadow.…`. Throws InputError.
   Change assign(std::string_view name, const Value&);
   Change assign_text(std::string_view name, std::string_view text);
   /// Every parameter with its current value, under the names that assign() takes.

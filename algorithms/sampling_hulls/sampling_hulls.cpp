@@ -34,7 +34,7 @@ class SamplingHulls final : public Technique {
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
     fit_map(target);
-    compile(forward.uniform_lighting());
+    compile(forward.light_defines());
     const Volume& volume = *scene.volume;
     const glm::mat4 world_to_local = glm::inverse(volume.to_world);
     cut(volume, camera);
@@ -111,21 +111,20 @@ class SamplingHulls final : public Technique {
     shared_depth_ = target.depth.id();
   }
 
-  void compile(bool uniform_source) {
+  void compile(gl::Defines defines) {
     if (!coordinates_) {
       coordinates_ = gl::Program("hull coordinates", {"algorithms/shaders/common/opaque.vert.glsl",
                                                       "algorithms/sampling_hulls/coordinates.frag.glsl"});
       back_ = gl::Program("hull back",
                           {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/back.frag.glsl"});
     }
-    if (front_ && compiled_samples_ == parameters_.samples && compiled_uniform_ == uniform_source) return;
-    gl::Defines defines{{"SAMPLES", fmt::to_string(parameters_.samples)}};
-    if (uniform_source) defines.emplace_back("UNIFORM_SOURCE", "1");
+    defines.emplace_back("SAMPLES", fmt::to_string(parameters_.samples));
+    if (parameters_.filter_occlusion) defines.emplace_back("FILTER_OCCLUSION", "1");
+    if (front_ && defines == front_defines_) return;
     front_ =
         gl::Program("hull front",
                     {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/front.frag.glsl"}, defines);
-    compiled_samples_ = parameters_.samples;
-    compiled_uniform_ = uniform_source;
+    front_defines_ = std::move(defines);
   }
 
   // Cuts the box anew only when view, volume or M changed.
@@ -152,8 +151,7 @@ class SamplingHulls final : public Technique {
   gl::Framebuffer map_framebuffer_;
   GLuint shared_depth_ = 0;
   gl::Program coordinates_, back_, front_;
-  int compiled_samples_ = 0;
-  bool compiled_uniform_ = false;
+  gl::Defines front_defines_;
   BoxGeometry geometry_;
   std::optional<CutKey> cut_;
 };

@@ -14,6 +14,7 @@ struct Parameters {
   int samples = 8;
   float sample_offset = 0.0F;
   Coordinates coordinates = Coordinates::automatic;
+  bool filter_occlusion = true;
 
   static constexpr void parameters(auto& self, auto&& visit) {
     visit(PARAM(hulls), {.symbol = "M", .range = {1, 64}, .cite = "Sec. 3.2", .doc = "sampling hulls per volume"});
@@ -31,6 +32,9 @@ struct Parameters {
            .doc = "format of the local-coordinates map; automatic is 8 bits below 256 voxels, else float",
            .when = Change::precompute,
            .choices = "automatic|unorm8|single"});
+    visit(PARAM(filter_occlusion), {.cite = "Eq. 3, 4",
+                                    .doc = "average each light's occlusion rate with those at the two half-way points",
+                                    .when = Change::program});
   }
 };
 static_assert(well_formed<Parameters>());

@@ -138,7 +138,7 @@ void check_off(const fs::path& path, std::uintmax_t bytes) {
 }
 
 void check_before_import(const fs::path& path, const std::string& kind) {
-  static constexpr std::array<std::string_view, 5> kKinds = {".obj", ".ply", ".off", ".gltf", ".glb"};
+  static constexpr std::array<std::string_view, 6> kKinds = {".obj", ".ply", ".off", ".gltf", ".glb", ".3ds"};
   if (std::find(kKinds.begin(), kKinds.end(), kind) == kKinds.end()) {
     throw unreadable(path, fmt::format("'{}' is not one of {}", kind, fmt::join(kKinds, ", ")));
   }

@@ -55,6 +55,7 @@ struct Light {
   glm::vec3 intensity{1.0F};
   float inner_angle_deg = 20.0F;  ///< half-angle of the full cone of a spot
   float outer_angle_deg = 30.0F;  ///< half-angle at which a spot reaches zero (smoothstep of the cosine between)
+  bool casts_shadow = false;      ///< opaque objects keep this light from surfaces and from the medium
 };
 inline constexpr int kMaxLights = 4;
 

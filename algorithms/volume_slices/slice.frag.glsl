@@ -4,13 +4,13 @@
 in vec3 local;
 
 uniform vec3 eye;
-uniform vec3 view_axis;   // unit, into the screen
-uniform float slab_m;     // thickness along the viewing axis
+uniform vec3 slab_axis;  // unit, across the slabs
+uniform float slab_m;    // thickness along it
 
 layout(location = 0) out vec4 color_and_transmittance;
 
 void main() {
   vec3 ray = normalize((volume_to_world * vec4(local, 1.0)).xyz - eye);
-  float opacity = step_opacity(medium_extinction(local), slab_m / dot(ray, view_axis));
-  color_and_transmittance = vec4(opacity * medium_source(local), 1.0 - opacity);
+  float opacity = step_opacity(medium_extinction(local), slab_m / abs(dot(ray, slab_axis)));
+  color_and_transmittance = vec4(opacity * medium_source(local, medium_visibility(local)), 1.0 - opacity);
 }

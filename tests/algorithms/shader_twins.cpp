@@ -6,7 +6,7 @@
 
 #include "algorithms/opacity.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
-#include "algorithms/sampling_hulls/valid_path.hpp"
+#include "algorithms/valid_path.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 
@@ -85,10 +85,10 @@ TEST(ShaderTwins, OpacityAndValidPath) {
     const double steps = static_cast<double>(q.step) / q.interval;
     const double left = 1 - corrected_opacity(q.opacity, steps);
     EXPECT_NEAR(out[k].corrected, 1 - left, 3e-6 + 1e-6 * steps * left) << k;
-    const double path = sampling_hulls::valid_path_length(q.s, q.sf, q.ray);
+    const double path = valid_path_length(q.s, q.sf, q.ray);
     clipped += path == 0 ? 1 : 0;
     EXPECT_NEAR(out[k].path, path, 1e-6) << k;
-    EXPECT_NEAR(out[k].sample_at, sampling_hulls::sample_distance(path, q.i, q.count, q.offset), 2e-6) << k;
+    EXPECT_NEAR(out[k].sample_at, sample_distance(path, q.i, q.count, q.offset), 2e-6) << k;
   }
   EXPECT_GT(clipped, 1000) << "paths that rounding turned round must be among the inputs";
   EXPECT_LT(clipped, 3000);
@@ -110,7 +110,6 @@ TEST(OpacityCorrection, CancelsTheVoxelInterval) {
 }
 
 TEST(ValidPath, SamplesRunFromTheBackToOneStepBehindTheFront) {
-  using namespace sampling_hulls;
   EXPECT_DOUBLE_EQ(sample_distance(2.0, 0, 4, 0.0), 2.0);  // s_0 = s
   EXPECT_DOUBLE_EQ(sample_distance(2.0, 3, 4, 0.0), 0.5);  // s_{N−1} = s^F − Δs
   EXPECT_DOUBLE_EQ(sample_distance(2.0, 0, 1, 0.5), 1.0);

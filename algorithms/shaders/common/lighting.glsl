@@ -31,25 +31,26 @@ vec3 light_irradiance(Light light, vec3 p, out vec3 to_light) {
   return light.intensity_inner.rgb * (spot / distance2);
 }
 
-// Radiance of a Lambertian surface with unit normal `n` turned to the viewer.
-vec3 surface_radiance(vec3 p, vec3 n, vec3 albedo, vec3 emission) {
+// Radiance of a Lambertian surface with unit normal `n` turned to the viewer; `visible`: the share of each light that
+// reaches it.
+vec3 surface_radiance(vec3 p, vec3 n, vec3 albedo, vec3 emission, vec4 visible) {
   vec3 incident = ambient_count.rgb;
   int count = int(ambient_count.w);
   for (int i = 0; i < count; ++i) {
     vec3 to_light;
     vec3 irradiance = light_irradiance(lights[i], p, to_light);
-    incident += irradiance * (max(dot(n, to_light), 0.0) / kPi);
+    incident += irradiance * (visible[i] * max(dot(n, to_light), 0.0) / kPi);
   }
   return emission + albedo * incident;
 }
 
 // Source radiance of the medium: isotropic single scattering, the phase function neglected as in Imagire et al. 2007, Sec. 5.
-vec3 medium_radiance(vec3 p, vec3 albedo, vec3 emission) {
+vec3 medium_radiance(vec3 p, vec3 albedo, vec3 emission, vec4 visible) {
   vec3 incident = ambient_count.rgb;
   int count = int(ambient_count.w);
   for (int i = 0; i < count; ++i) {
     vec3 to_light;
-    incident += light_irradiance(lights[i], p, to_light) / (4.0 * kPi);
+    incident += light_irradiance(lights[i], p, to_light) * (visible[i] / (4.0 * kPi));
   }
   return emission + albedo * incident;
 }

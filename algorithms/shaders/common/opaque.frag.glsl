@@ -1,5 +1,5 @@
 // The usual shading of opaque objects.
-#include "algorithms/shaders/common/lighting.glsl"
+#include "algorithms/shaders/common/shadows.glsl"
 
 in vec3 world_position;
 in vec3 world_normal;
@@ -15,6 +15,6 @@ void main() {
   vec3 n = normalize(world_normal);
   vec3 to_eye = eye - world_position;
   if (dot(n, to_eye) < 0.0) n = -n;
-  radiance = vec4(surface_radiance(world_position, n, albedo, emission), 1.0);
+  radiance = vec4(surface_radiance(world_position, n, albedo, emission, light_visibilities(world_position)), 1.0);
   eye_distance_m = length(to_eye);
 }

@@ -4,8 +4,9 @@
 
 #include <glm/glm.hpp>
 
-/// The valid sampling path of a viewing ray in a hull (Imagire et al. 2007, Sec. 3.2). GLSL twin: valid_path.glsl.
-namespace pellucid::sampling_hulls {
+/// The valid sampling path of a viewing ray in a hull (Imagire et al. 2007, Sec. 3.2). GLSL twin:
+/// shaders/common/valid_path.glsl.
+namespace pellucid {
 
 /// Length [m] of the path from s to s^F along the unit viewing ray; 0 where rounding put s before s^F.
 inline double valid_path_length(const glm::dvec3& s_world, const glm::dvec3& sf_world, const glm::dvec3& ray) {
@@ -17,4 +18,4 @@ inline double sample_distance(double path_length_m, double i, double count, doub
   return path_length_m * (1 - (i + offset) / count);
 }
 
-}  // namespace pellucid::sampling_hulls
+}  // namespace pellucid

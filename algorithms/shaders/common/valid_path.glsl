@@ -1,4 +1,4 @@
-// The valid sampling path of a viewing ray in a hull (Sec. 3.2, Fig. 4). C++ twin: valid_path.hpp.
+// The valid sampling path of a viewing ray in a hull (Sec. 3.2, Fig. 4). C++ twin: algorithms/valid_path.hpp.
 
 // Length [m] of the path from s, read from the local-coordinates map, to s^F on the front face. s is projected onto the
 // viewing ray (unit `ray`, world): rounding to 8 bits moves it off the ray, and on a short path even past s^F, where the
