@@ -138,7 +138,7 @@ TEST_F(MeshFileTest, EmptyMissingOrUnknownFilesAreRefused) {
             refusal("none.obj") + "No such file or directory");
   EXPECT_EQ(message_of([&] { load_mesh_file(write("e.obj", ""), 60); }), refusal("e.obj") + "the file is empty");
   EXPECT_EQ(message_of([&] { load_mesh_file(write("m.stl", "x"), 60); }),
-            refusal("m.stl") + "'.stl' is not one of .obj, .ply, .off, .gltf, .glb");
+            refusal("m.stl") + "'.stl' is not one of .obj, .ply, .off, .gltf, .glb, .3ds");
   EXPECT_THROW(load_mesh_file(write("p.obj", "v 0 0 0\nv 1 0 0\n"), 60), InputError);
   EXPECT_THROW(load_mesh_file(write("p.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), 60), InputError);
 }

@@ -339,6 +339,7 @@ TEST_F(SceneLoading, AnUnknownNameIsSuggested) {
 
 TEST(EmbeddedScenes, AllLoadAtTheEndsOfTheirParameters) {
   std::set<std::string> names;
+  EXPECT_FALSE(list_scenes().empty());
   for (const SceneInfo& info : list_scenes()) {
     SCOPED_TRACE(info.name);
     EXPECT_TRUE(names.insert(info.name).second) << "two modules have a scene of this name";
