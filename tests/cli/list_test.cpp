@@ -36,11 +36,15 @@ TEST(Help, NamesEverySubcommand) {
 
 TEST(Help, EverySubcommandShowsAnExample) {
   for (std::vector<std::string> words : subcommands()) {
-    const std::string name = words.back();
+    std::string name = "pellucid";
+    for (const std::string& word : words)
+      name += " " + word;
     words.push_back("--help");
     const Outcome help = pellucid(words);
     ASSERT_TRUE(succeeded(help)) << name;
-    EXPECT_NE(help.out.find("Example: pellucid " + words.front()), std::string::npos) << name << "\n" << help.out;
+    const std::size_t examples = help.out.find("\nExample");
+    ASSERT_NE(examples, std::string::npos) << name << "\n" << help.out;
+    EXPECT_NE(help.out.find(name + " ", examples), std::string::npos) << name << "\n" << help.out;
   }
 }
 
@@ -64,7 +68,9 @@ TEST(Help, VersionIsOneLine) {
 
 TEST(Usage, NothingUnknownOrExtraIsAccepted) {
   EXPECT_TRUE(refused(pellucid({}), 2, {"subcommand"}));
-  EXPECT_TRUE(refused(pellucid({"rendr"}), 2, {"rendr"}));
+  EXPECT_TRUE(refused(pellucid({"rendr"}), 2, {"'rendr'", "'render'"}));
+  EXPECT_TRUE(refused(pellucid({"sweep", "rn"}), 2, {"'rn'", "'run'"}));
+  EXPECT_TRUE(refused(pellucid({"qqqqqqqq"}), 2, {"qqqqqqqq", "render", "compare"}));
   EXPECT_TRUE(refused(pellucid({"list", "nonsense"}), 2, {"nonsense"}));
   EXPECT_TRUE(refused(pellucid({"list", "--jsn"}), 2, {"--jsn"}));
   EXPECT_TRUE(refused(pellucid({"list", "scenes", "more"}), 2, {"more"}));

@@ -16,16 +16,18 @@ namespace {
 using nlohmann::json;
 using Words = std::vector<std::string>;
 
-/// A spec of four points and their reference, with timing as short as it can be.
-std::string small_spec(const std::string& scene, const std::string& hulls = "[1, 2, 4]") {
+/// A spec of a point for each of `hulls` and one more, with `samples` frames timed at each.
+std::string small_spec(const std::string& scene, const std::string& hulls = "[1, 2, 4]", int samples = 5) {
   return R"(name = "small"
 title = "A small sweep"
 metrics = ["rmse", "flip"]
 timeout_s = 60
 
 [timing]
-min_samples = 5
-max_samples = 5
+min_samples = )" +
+         std::to_string(samples) + R"(
+max_samples = )" +
+         std::to_string(samples) + R"(
 max_seconds = 2
 
 [reference]
@@ -107,7 +109,9 @@ TEST_F(Sweep, MeasuresEveryPointOnceAndKeepsTheRows) {
 
 TEST_F(Sweep, ARowSaysHowToRepeatItself) {
   ASSERT_TRUE(succeeded(sweep()));
-  std::string repeat = rows().front().at("repeat").get<std::string>();
+  const json measured = rows();
+  ASSERT_FALSE(measured.empty());
+  std::string repeat = measured.front().at("repeat").get<std::string>();
   ASSERT_TRUE(repeat.starts_with("pellucid ")) << repeat;
   repeat.replace(0, std::string("pellucid").size(), "'" PELLUCID_PROGRAM "'");
   EXPECT_TRUE(succeeded(run({"sh", "-c", repeat}, {.folder = folder.path()}))) << repeat;
@@ -121,17 +125,28 @@ TEST_F(Sweep, ADryRunMeasuresNothing) {
 }
 
 TEST_F(Sweep, StatusCountsWhatIsDone) {
+  ASSERT_EQ(sweep({"--limit", "3"}).signal, 0);
+  auto counted = [&](const char* what) {
+    const Outcome outcome = pellucid({"sweep", "status", store, "--json"});
+    EXPECT_TRUE(succeeded(outcome));
+    int sum = 0;
+    for (const json& block : json::parse(outcome.out))
+      sum += block.at(what).get<int>();
+    return sum;
+  };
+  EXPECT_EQ(counted("planned"), 4);
+  EXPECT_EQ(counted("done"), 3);
+  EXPECT_EQ(counted("left"), 1);
   ASSERT_TRUE(succeeded(sweep()));
+  EXPECT_EQ(counted("done"), 4);
+  EXPECT_EQ(counted("failed"), 0);
   const Outcome plain = pellucid({"sweep", "status", store});
   ASSERT_TRUE(succeeded(plain));
   EXPECT_NE(plain.out.find("small"), std::string::npos);
-  const Outcome counted = pellucid({"sweep", "status", store, "--json"});
-  ASSERT_TRUE(succeeded(counted));
-  EXPECT_FALSE(json::parse(counted.out).empty());
 }
 
 TEST_F(Sweep, AKilledSweepResumesAndKeepsWhatItHad) {
-  spec = write_file(folder / "small.toml", small_spec(scene, "{ from = 1, to = 12, steps = 12 }")).string();
+  spec = write_file(folder / "small.toml", small_spec(scene, "{ from = 1, to = 12, steps = 12 }", 400)).string();
   {
     Background running({PELLUCID_PROGRAM, "sweep", "run", spec, "--store", store});
     // Until a row is there, or it is over.
@@ -145,6 +160,7 @@ TEST_F(Sweep, AKilledSweepResumesAndKeepsWhatItHad) {
   }
   const json before = rows();
   ASSERT_GT(before.size(), 0U);
+  ASSERT_LT(before.size(), 13U) << "it was over before it could be killed";
   ASSERT_TRUE(succeeded(sweep()));
   const json after = rows();
   EXPECT_EQ(after.size(), 13U);
@@ -200,28 +216,32 @@ TEST_F(Sweep, FailuresLeaveTheStoreAsItWas) {
 
 TEST_F(Sweep, SpecErrorsNameFileLineAndColumn) {
   const std::string good = read_file(spec);
-  auto with = [&](const std::string& text) {
-    write_file(spec, text);
-    return sweep({"--dry-run"});
-  };
-  auto replaced = [&](const std::string& what, const std::string& by) {
+  // The spec with `by` in place of the first `what` is refused, with the place of `pointed` in it and `parts`.
+  auto refuses = [&](const std::string& what, const std::string& by, const std::string& pointed, Words parts) {
     std::string text = good;
-    const std::size_t at = text.find(what);
-    EXPECT_NE(at, std::string::npos) << what;
-    return text.replace(at, what.size(), by);
+    const std::size_t begin = text.find(what);
+    if (begin == std::string::npos) return testing::AssertionFailure() << "the spec has no " << what;
+    text.replace(begin, what.size(), by);
+    const std::size_t at = text.find(pointed, begin);
+    const std::size_t line =
+        static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
+    const std::size_t column = at - (text.rfind('\n', at) + 1);
+    parts.push_back("small.toml:" + std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": ");
+    write_file(spec, text);
+    return refused(sweep({"--dry-run"}), 2, parts);
   };
-  EXPECT_TRUE(refused(with(replaced("title = \"A", "title = A")), 2, {"small.toml:2:9"}));
-  EXPECT_TRUE(refused(with(replaced("metrics", "metrcs")), 2, {"small.toml:3:1", "metrcs", "metrics"}));
-  EXPECT_TRUE(refused(with(replaced("\"flip\"", "\"flop\"")), 2, {"small.toml:3:", "flop", "flip"}));
-  EXPECT_TRUE(refused(with(replaced("hulls = [", "hull = [")), 2, {"small.toml:20:", "'hull'", "'hulls'"}));
-  EXPECT_TRUE(refused(with(replaced("[1, 2, 4]", "[1, 2, 400]")), 2, {"small.toml:20:", "400", "[1, 64]"}));
-  EXPECT_TRUE(refused(with(replaced("[1, 2, 4]", "[1, \"two\"]")), 2, {"small.toml:20:", "hulls"}));
-  EXPECT_TRUE(refused(with(replaced("[1, 2, 4]", "[]")), 2, {"small.toml:20:", "hulls"}));
-  EXPECT_TRUE(
-      refused(with(replaced("\"sampling_hulls\"", "\"sampling_hull\"")), 2, {"small.toml:15:", "sampling_hulls"}));
-  EXPECT_TRUE(refused(with(replaced("48x36", "100000x100000")), 2, {"small.toml:17:"}));
-  EXPECT_TRUE(refused(with(replaced("timeout_s = 60", "timeout_s = \"60\"")), 2, {"small.toml:4:"}));
-  EXPECT_TRUE(refused(with(""), 2, {"small.toml"}));
+  EXPECT_TRUE(refuses("title = \"A", "title = A", "A small", {}));
+  EXPECT_TRUE(refuses("metrics", "metrcs", "metrcs", {"metrcs", "metrics"}));
+  EXPECT_TRUE(refuses("\"flip\"", "\"flop\"", "\"flop\"", {"flop", "flip"}));
+  EXPECT_TRUE(refuses("hulls = [", "hull = [", "hull", {"'hull'", "'hulls'"}));
+  EXPECT_TRUE(refuses("[1, 2, 4]", "[1, 2, 400]", "400", {"hulls", "400", "[1, 64]"}));
+  EXPECT_TRUE(refuses("[1, 2, 4]", "[1, \"two\"]", "\"two\"", {"hulls", "two", "integer"}));
+  EXPECT_TRUE(refuses("[1, 2, 4]", "[]", "[]", {"hulls"}));
+  EXPECT_TRUE(refuses("\"sampling_hulls\"", "\"sampling_hull\"", "\"sampling_hull\"", {"'sampling_hulls'"}));
+  EXPECT_TRUE(refuses("\"48x36\"", "\"100000x100000\"", "\"100000x100000\"", {"100000x100000"}));
+  EXPECT_TRUE(refuses("timeout_s = 60", "timeout_s = \"60\"", "\"60\"", {"timeout_s"}));
+  write_file(spec, "");
+  EXPECT_TRUE(refused(sweep({"--dry-run"}), 2, {"small.toml"}));
   EXPECT_FALSE(std::filesystem::exists(store));
 }
 
