@@ -15,9 +15,9 @@ struct MeshFile {
   std::vector<std::filesystem::path> files;  ///< the file and those it refers to (a glTF's buffers), in order of use
 };
 
-/// Reads OBJ, PLY, OFF, glTF or 3DS: all its triangles as one mesh, node transforms applied, materials left aside. A file
-/// without normals gets them, smoothed where faces meet at less than `crease_deg`. Throws InputError: missing, empty,
-/// malformed, or more than kMaxTriangles.
+/// Reads OBJ, PLY, OFF, glTF or 3DS: all its triangles as one mesh, node transforms applied, materials left aside. A
+/// file without normals gets them, smoothed where faces meet at less than `crease_deg`. Throws InputError: missing,
+/// empty, malformed, or more than kMaxTriangles.
 MeshFile load_mesh_file(const std::filesystem::path&, double crease_deg);
 
 /// Gives the mesh normals: at each corner the mean, weighted by area, of the triangles around that point that meet the

@@ -11,10 +11,12 @@
 
 #include "gl/error.hpp"
 
-namespace toml::inline v3 {
+namespace toml {
+inline namespace v3 {
 class node;
 class table;
-}  // namespace toml::inline v3
+}  // namespace v3
+}  // namespace toml
 
 /// Reading a scene file key by key: each number is checked once, where it is read, and is from then on known by its
 /// dotted path to the scene's parameters. Every error is an InputError "file:line:column: message".
