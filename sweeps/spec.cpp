@@ -280,9 +280,9 @@ Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue) {
     if (const auto text = find_resource(resource)) return parse_spec(*text, resource, catalogue);
     const std::vector<std::string> names = list_specs();
     const std::string near = nearest_name(path_or_name, names);
-    throw InputError(fmt::format(
-        "no spec named '{}'; {} (a file's name ends in .toml)", path_or_name,
-        near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near)));
+    throw InputError(fmt::format("no spec named '{}'; {} (a file's name ends in .toml)", path_or_name,
+                                 near.empty() ? fmt::format("built in are: {}", fmt::join(names, ", "))
+                                              : fmt::format("did you mean '{}'?", near)));
   }
   std::error_code error;
   if (!std::filesystem::is_regular_file(path_or_name, error)) {

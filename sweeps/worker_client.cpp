@@ -74,6 +74,8 @@ bool WorkerClient::start(const Hooks& hooks) {
   std::string words = process_->last_words();
   if (words.starts_with("error: ")) words.erase(0, 7);
   process_.reset();
+  // Status 2 is what `main` gives to bad input, such as a device that does not exist.
+  if (received.event == Event::ended && end == "ended with status 2" && !words.empty()) throw InputError(words);
   throw RuntimeError(fmt::format("no render worker: it {}{}{}", why, words.empty() ? "" : ": ", words));
 }
 

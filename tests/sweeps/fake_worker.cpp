@@ -112,7 +112,7 @@ int run_role(const std::vector<std::string>& arguments) {
   if (role == "real-worker") return run_worker(std::nullopt);
   if (role == "dead-worker") {
     std::cerr << "error: no GL device" << std::endl;
-    return 1;
+    return std::stoi(arguments.at(1));
   }
   if (role == "chatty-worker") {
     std::cout << "hello" << std::endl;

@@ -192,10 +192,15 @@ TEST_F(Sweep, SaysWhyNoWorkerStarts) {
     }
     return std::string();
   };
-  EXPECT_EQ(error(self({"dead-worker"})), "no render worker: it ended with status 1: no GL device");
+  EXPECT_EQ(error(self({"dead-worker", "1"})), "no render worker: it ended with status 1: no GL device");
   EXPECT_EQ(error(self({"chatty-worker"})), "no render worker: it began with 'hello'");
   EXPECT_EQ(error({"/nonexistent/worker"}), "no render worker: it ended with status 127: No such file or directory");
   EXPECT_EQ(error({"sleep", "30"}, "0.5"), "no render worker: it said nothing for 1 s");
+}
+
+TEST_F(Sweep, BadInputOfAWorkerIsBadInput) {
+  options.worker = self({"dead-worker", "2"});  // as for a --device that does not exist
+  EXPECT_EQ(input_error([&] { run(spec("") + "[run.axes]\nn = [1]\n"); }), "no GL device");
 }
 
 TEST_F(Sweep, StopsAtAnInterruptAndGoesOnLater) {
