@@ -175,6 +175,7 @@ void ForwardPass::draw_batches() const {
 
 void ForwardPass::bind_lights() const {
   lights_.bind_uniform(0);
+  if (shadowed_) shadows_.bind();
 }
 
 void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
