@@ -19,6 +19,18 @@ struct SurfaceLayer {
   std::vector<double> distance_m;  ///< one per pixel
 };
 
+/// What shading needs of the surface at each pixel centre, rows from the top, as a rasteriser gives it.
+struct SurfacePoints {
+  Image albedo;                    ///< RGB, vertex colours and tints applied
+  Image normal;                    ///< unit, world, turned to the viewer; zero where nothing is hit
+  Image emission;                  ///< RGB
+  std::vector<double> distance_m;  ///< one per pixel, infinite where nothing is hit
+};
+
+/// Shades them with exact shadows (Embree rays to the lights that cast them) and the environment behind: the surfaces
+/// of the raster pass without the error of its shadow maps.
+SurfaceLayer shade_surfaces(const Scene&, const Camera&, const SurfacePoints&);
+
 /// Traces the opaque surfaces and the environment behind them with Embree.
 SurfaceLayer trace_surfaces(const Scene&, const Camera&);
 

@@ -59,16 +59,31 @@ struct Light {
 };
 inline constexpr int kMaxLights = 4;
 
+/// What a density means: extinction and colour at it, linear between two points and constant beyond the outermost.
+struct TransferPoint {
+  float density = 0;
+  float extinction = 0;    ///< φ [1/m], times the volume's `extinction`
+  glm::vec3 albedo{1.0F};  ///< times the volume's `albedo`
+};
+
 /// A box of voxels. `to_world` maps local coordinates [0,1]³ to the world, so its columns are the box's edges.
-/// Voxel centres lie at (i + 1/2)/n; density is interpolated trilinearly and clamped at the border.
+/// Voxel centres lie at (i + 1/2)/n; density is interpolated trilinearly and clamped at the border, and then mapped by
+/// the transfer function, if there is one.
 struct Volume {
   std::string name;
   glm::ivec3 size{1};
   std::vector<float> density;  ///< x fastest; ≥ 0, finite
   glm::mat4 to_world{1.0F};
-  float extinction = 1.0F;   ///< φ [1/m] at density 1
-  glm::vec3 albedo{1.0F};    ///< single-scattering albedo
-  glm::vec3 emission{0.0F};  ///< radiance added to the scattered one
+  float extinction = 1.0F;              ///< φ [1/m] at density 1
+  glm::vec3 albedo{1.0F};               ///< single-scattering albedo
+  glm::vec3 emission{0.0F};             ///< radiance added to the scattered one
+  std::vector<TransferPoint> transfer;  ///< empty, or two or more points of rising density
+
+  /// Imagire et al. 2007, Sec. 5 and Fig. 11: the index of the spotlight in whose space the volume lies, or −1. Its box
+  /// then follows the light, and its voxels store what the light sends them: no other light is scattered in it.
+  int light = -1;
+  std::vector<float>
+      scattering;  ///< with a light: irradiance over intensity [1/m²] at the voxels, unshadowed; as density
 
   glm::vec3 voxel_spacing_m() const;  ///< edge length of a voxel along each axis, in the world
 };
