@@ -71,7 +71,7 @@ void add_disc(Mesh& mesh, float radius, float y, int segments, bool upwards) {
 }  // namespace
 
 Mesh make_sphere(float radius, int segments) {
-  assert(radius > 0.0F && segments >= 4);
+  assert(radius > 0.0F && segments >= 3);
   Mesh mesh;
   mesh.name = "sphere";
   const int rows = std::max(2, segments / 2);
@@ -176,7 +176,7 @@ Mesh make_cone(float radius, float height, int segments) {
 }
 
 Mesh make_torus(float major_radius, float minor_radius, int segments) {
-  assert(minor_radius > 0.0F && major_radius >= minor_radius && segments >= 3);
+  assert(minor_radius > 0.0F && major_radius > 0.0F && segments >= 3);
   Mesh mesh;
   mesh.name = "torus";
   const int rows = std::max(3, segments / 2);

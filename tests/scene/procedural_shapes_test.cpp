@@ -90,6 +90,8 @@ TEST(ProceduralShapes, AreSoundAndClosed) {
     }
   }
   expect_closed(make_sphere(1.0F, 4));  // an octahedron
+  expect_closed(make_sphere(1.0F, 3));
+  expect_closed(make_torus(0.2F, 0.5F, 3));  // cuts through itself
   expect_sound(make_box({1, 2, 3}));
   expect_closed(make_box({1, 2, 3}));
   expect_sound(make_plane({2, 3}, 5));

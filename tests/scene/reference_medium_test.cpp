@@ -1,6 +1,5 @@
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 
