@@ -7,7 +7,11 @@
 #include <type_traits>
 #include <vector>
 
-#include <embree3/rtcore.h>
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>  // Debian 12
+#endif
 #include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
@@ -67,8 +71,6 @@ class Geometry {
   }
 
   Hit intersect(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query{};
     query.ray.org_x = static_cast<float>(origin.x);
     query.ray.org_y = static_cast<float>(origin.y);
@@ -81,7 +83,13 @@ class Geometry {
     query.ray.mask = ~0U;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(root_.get(), &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
     rtcIntersect1(root_.get(), &context, &query);
+#endif
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
 
     Hit hit;
