@@ -229,6 +229,16 @@ void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Progra
   draw_batches();
 }
 
+void ForwardPass::draw_surface_points(const Camera& camera) {
+  if (!surface_points_) {
+    surface_points_ = gl::Program(
+        "surface points", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/shaders/common/opaque.frag.glsl"},
+        {{"SURFACE_POINTS", "1"}});
+  }
+  surface_points_.set("eye", camera.view.eye);
+  draw_geometry(camera, surface_points_);
+}
+
 std::string ForwardPass::reload_shaders() {
   return opaque_.reload() + background_.reload() + shadows_.reload_shaders();
 }

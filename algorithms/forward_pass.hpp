@@ -29,6 +29,10 @@ class ForwardPass {
   void draw_geometry(const Camera&, const gl::Program&) const;
   void draw_geometry(const glm::mat4& world_to_clip, const gl::Program&) const;
 
+  /// Opaque objects only, unshaded: albedo, distance from the eye [m], unit normal and emission into the four colour
+  /// attachments of the bound framebuffer; clears and writes depth.
+  void draw_surface_points(const Camera&);
+
   /// Draws the shadow maps of the lights that cast shadows, unless the settings allow keeping those of the last frame.
   void update_shadows(const Scene&, const ShadowSettings&);
   bool shadowed() const { return shadowed_; }
@@ -64,7 +68,7 @@ class ForwardPass {
   std::optional<std::uint64_t> shadow_revision_;
   bool shadowed_ = false;  // some light casts shadows
   gl::Defines opaque_defines_;
-  gl::Program opaque_, background_;
+  gl::Program opaque_, background_, surface_points_;
   gl::VertexArray fullscreen_;
 };
 

@@ -1,5 +1,8 @@
 #include "algorithms/medium.hpp"
 
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "gl/context.hpp"
@@ -11,6 +14,36 @@ const Volume& require_volume(const Scene& scene, const char* technique) {
   return *scene.volume;
 }
 
+namespace {
+
+// Fine enough that a kink of the piecewise linear function is cut by less than 1/2048 of its range.
+constexpr int kTransferTexels = 1024;
+
+std::vector<float> tabulate(const std::vector<TransferPoint>& transfer) {
+  const float low = transfer.front().density, high = transfer.back().density;
+  std::vector<float> texels;
+  std::size_t k = 0;
+  for (int i = 0; i < kTransferTexels; ++i) {
+    const float density = low + (high - low) * static_cast<float>(i) / (kTransferTexels - 1);
+    while (k + 2 < transfer.size() && transfer[k + 1].density < density)
+      ++k;
+    const TransferPoint &a = transfer[k], &b = transfer[k + 1];
+    const float t = glm::clamp((density - a.density) / (b.density - a.density), 0.0F, 1.0F);
+    const glm::vec3 albedo = glm::mix(a.albedo, b.albedo, t);
+    texels.insert(texels.end(), {albedo.x, albedo.y, albedo.z, glm::mix(a.extinction, b.extinction, t)});
+  }
+  return texels;
+}
+
+gl::Texture make_map(const std::string& label, const glm::ivec3& size, const std::vector<float>& voxels) {
+  gl::Texture map = gl::Texture::make_3d(label, gl::Format::r16f, size.x, size.y, size.z);
+  map.upload(voxels);
+  map.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
+  return map;
+}
+
+}  // namespace
+
 Medium::Medium(const Scene& scene, const char* technique) {
   const Volume& volume = require_volume(scene, technique);
   const int limit = gl::limits().max_3d_texture_size;
@@ -18,10 +51,24 @@ Medium::Medium(const Scene& scene, const char* technique) {
     throw InputError(fmt::format("{}: the volume '{}' has {}×{}×{} voxels, this device allows {} along an axis",
                                  technique, volume.name, volume.size.x, volume.size.y, volume.size.z, limit));
   }
-  density_ =
-      gl::Texture::make_3d(volume.name + " density", gl::Format::r16f, volume.size.x, volume.size.y, volume.size.z);
-  density_.upload(volume.density);
-  density_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
+  density_ = make_map(volume.name + " density", volume.size, volume.density);
+  if (volume.light >= 0) scattering_ = make_map(volume.name + " scattering", volume.size, volume.scattering);
+  if (!volume.transfer.empty()) {
+    transfer_ = gl::Texture::make_2d(volume.name + " transfer", gl::Format::rgba32f, kTransferTexels, 1);
+    transfer_.upload(tabulate(volume.transfer));
+    transfer_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
+    const float low = volume.transfer.front().density;
+    transfer_range_ = {low, 1 / (volume.transfer.back().density - low)};
+  }
+}
+
+gl::Defines Medium::defines(gl::Defines light_defines) const {
+  if (!transfer_ && !scattering_) return light_defines;
+  // The source then depends on the place, whatever the lights do.
+  std::erase_if(light_defines, [](const auto& define) { return define.first == "UNIFORM_SOURCE"; });
+  if (transfer_) light_defines.emplace_back("TRANSFER", "1");
+  if (scattering_) light_defines.emplace_back("LIGHT_SPACE", "1");
+  return light_defines;
 }
 
 void Medium::bind(const gl::Program& program, const Volume& volume) const {
@@ -30,6 +77,14 @@ void Medium::bind(const gl::Program& program, const Volume& volume) const {
   program.set("volume_extinction", volume.extinction);
   program.set("volume_albedo", volume.albedo);
   program.set("volume_emission", volume.emission);
+  if (transfer_) {
+    transfer_.bind(3);
+    program.set("transfer_range", transfer_range_);
+  }
+  if (scattering_) {
+    scattering_.bind(4);
+    program.set("volume_light", volume.light);
+  }
 }
 
 void BoxGeometry::upload(BoxPieces box) {

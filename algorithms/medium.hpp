@@ -10,14 +10,19 @@ namespace pellucid {
 /// A volume on the GPU, for programs that include shaders/common/medium.glsl.
 class Medium {
  public:
-  /// Uploads the density as R16F. Throws InputError when the scene has no volume or it exceeds the device's limit.
+  /// Uploads density and scattering as R16F and the transfer function as a table. Throws InputError when the scene has
+  /// no volume or it exceeds the device's limit.
   explicit Medium(const Scene&, const char* technique);
 
-  /// Binds the density map (unit 0) and sets the uniforms of medium.glsl.
+  /// The defines of the forward pass, adapted to what this volume needs of medium.glsl: TRANSFER with a transfer
+  /// function, LIGHT_SPACE for a volume in a light's space.
+  gl::Defines defines(gl::Defines light_defines) const;
+  /// Binds the maps (units 0, 3 and 4) and sets the uniforms of medium.glsl.
   void bind(const gl::Program&, const Volume&) const;
 
  private:
-  gl::Texture density_;
+  gl::Texture density_, transfer_, scattering_;
+  glm::vec2 transfer_range_{0.0F};
 };
 
 /// Pieces of the volume's box as vertex buffer.

@@ -166,20 +166,34 @@ Image RenderSession::read_color() const {
 SurfaceLayer RenderSession::raster_surfaces() {
   State& s = *state_;
   s.forward.update(s.scene);
-  s.forward.update_shadows(s.scene, s.shadow);
   const int width = s.camera.width, height = s.camera.height;
-  const gl::Texture radiance = gl::Texture::make_2d("surface radiance", gl::Format::rgba32f, width, height);
+  const gl::Texture color = gl::Texture::make_2d("surface colour", gl::Format::rgba32f, width, height);
   const gl::Texture distance = gl::Texture::make_2d("surface distance", gl::Format::r32f, width, height);
   const gl::Texture depth = gl::Texture::make_2d("surface depth", gl::Format::depth32f, width, height);
-  const gl::Framebuffer framebuffer("surfaces", {&radiance, &distance}, &depth);
+  auto read_distance = [&] {
+    const Image metres = flipped(distance.read(), width, height, 1, 1);
+    return std::vector<double>(metres.pixels.begin(), metres.pixels.end());
+  };
+  if (!s.forward.shadowed()) {
+    const gl::Framebuffer framebuffer("surfaces", {&color, &distance}, &depth);
+    framebuffer.bind();
+    s.forward.draw_shaded(s.camera, false);
+    gl::check("raster_surfaces", s.info->name);
+    return {flipped(color.read(), width, height, 4, 3), read_distance()};
+  }
+  // Shadow maps err, and the reference must not: it shades the points itself.
+  const gl::Texture normal = gl::Texture::make_2d("surface normal", gl::Format::rgba32f, width, height);
+  const gl::Texture emission = gl::Texture::make_2d("surface emission", gl::Format::rgba32f, width, height);
+  const gl::Framebuffer framebuffer("surface points", {&color, &distance, &normal, &emission}, &depth);
   framebuffer.bind();
-  s.forward.draw_shaded(s.camera, false);
+  for (int attachment : {0, 2, 3})
+    framebuffer.clear_color(attachment, {0, 0, 0, 0});
+  framebuffer.clear_color(1, {std::numeric_limits<float>::infinity(), 0, 0, 0});
+  s.forward.draw_surface_points(s.camera);
   gl::check("raster_surfaces", s.info->name);
-  SurfaceLayer layer;
-  layer.radiance = flipped(radiance.read(), width, height, 4, 3);
-  const Image metres = flipped(distance.read(), width, height, 1, 1);
-  layer.distance_m.assign(metres.pixels.begin(), metres.pixels.end());
-  return layer;
+  return shade_surfaces(s.scene, s.camera,
+                        {flipped(color.read(), width, height, 4, 3), flipped(normal.read(), width, height, 4, 3),
+                         flipped(emission.read(), width, height, 4, 3), read_distance()});
 }
 
 Scene& RenderSession::scene() {

@@ -36,7 +36,7 @@ class RayMarching final : public Technique {
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
     fit(target);
-    compile(forward.light_defines());
+    compile(medium_->defines(forward.light_defines()));
     const Volume& volume = *scene.volume;
     const glm::mat4 world_to_view = camera.world_to_view();
     const BoxDepth depth(volume.to_world, world_to_view);

@@ -34,7 +34,7 @@ class SamplingHulls final : public Technique {
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
     fit_map(target);
-    compile(forward.light_defines());
+    compile(medium_->defines(forward.light_defines()));
     const Volume& volume = *scene.volume;
     const glm::mat4 world_to_local = glm::inverse(volume.to_world);
     cut(volume, camera);

@@ -11,6 +11,7 @@ layout(location = 0) out vec4 color_and_transmittance;
 
 void main() {
   vec3 ray = normalize((volume_to_world * vec4(local, 1.0)).xyz - eye);
-  float opacity = step_opacity(medium_extinction(local), slab_m / abs(dot(ray, slab_axis)));
-  color_and_transmittance = vec4(opacity * medium_source(local, medium_visibility(local)), 1.0 - opacity);
+  MediumPoint medium = medium_at(local);
+  float opacity = step_opacity(medium.extinction, slab_m / abs(dot(ray, slab_axis)));
+  color_and_transmittance = vec4(opacity * medium_source(local, medium.albedo, medium_visibility(local)), 1.0 - opacity);
 }

@@ -21,7 +21,7 @@ class VolumeSlices final : public Technique {
 
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
-    compile(forward.light_defines());
+    compile(medium_->defines(forward.light_defines()));
     const Volume& volume = *scene.volume;
     cut(volume, camera);
     {

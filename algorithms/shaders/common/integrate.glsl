@@ -12,10 +12,10 @@ vec4 integrate_path(vec3 front, vec3 ray_local, float path_length, int samples, 
   // With one C0 for all points, C = C0·(1 − A), and A = Π exp(−φ Δd) needs one exponential instead of N.
   float extinction = 0.0;
   for (int i = 0; i < samples; ++i) {
-    extinction += medium_extinction(front + ray_local * sample_distance(path_length, float(i), count, sample_offset));
+    extinction += medium_at(front + ray_local * sample_distance(path_length, float(i), count, sample_offset)).extinction;
   }
   float opacity = step_opacity(extinction, step);
-  return vec4(opacity * medium_source(front, vec4(1.0)), 1.0 - opacity);
+  return vec4(opacity * medium_source(front, volume_albedo, vec4(1.0)), 1.0 - opacity);
 #else
   vec3 color = vec3(0.0);
   float transmittance = 1.0;
@@ -31,8 +31,9 @@ vec4 integrate_path(vec3 front, vec3 ray_local, float path_length, int samples, 
     visible = filtered_occlusion(half_way, visible, next);
     half_way = next;
 #endif
-    float opacity = step_opacity(medium_extinction(p), step);
-    color = mix(color, medium_source(p, visible), opacity);
+    MediumPoint medium = medium_at(p);
+    float opacity = step_opacity(medium.extinction, step);
+    color = mix(color, medium_source(p, medium.albedo, visible), opacity);
     transmittance *= 1.0 - opacity;
   }
   return vec4(color, transmittance);

@@ -8,23 +8,55 @@ uniform float volume_extinction;  // φ at density 1 [1/m]
 uniform vec3 volume_albedo;
 uniform vec3 volume_emission;
 
-// Extinction φ [1/m].
-float medium_extinction(vec3 local) { return volume_extinction * textureLod(density_map, local, 0.0).r; }
+#ifdef TRANSFER
+layout(binding = 3) uniform sampler2D transfer_map;  // rgb: albedo, a: φ; one row over the densities of transfer_range
+uniform vec2 transfer_range;                         // x: least density, y: 1 / (greatest − least)
+#endif
+#ifdef LIGHT_SPACE
+// The volume lies in a spotlight's space and stores what that light sends to each voxel, per unit of its intensity
+// (Imagire et al. 2007, Sec. 5 and Fig. 11).
+layout(binding = 4) uniform sampler3D scattering_map;
+uniform int volume_light;
+#endif
+
+struct MediumPoint {
+  float extinction;  // φ [1/m]
+  vec3 albedo;
+};
+
+MediumPoint medium_at(vec3 local) {
+  float density = textureLod(density_map, local, 0.0).r;
+#ifdef TRANSFER
+  float texels = float(textureSize(transfer_map, 0).x);
+  float u = clamp((density - transfer_range.x) * transfer_range.y, 0.0, 1.0);
+  vec4 mapped = textureLod(transfer_map, vec2((u * (texels - 1.0) + 0.5) / texels, 0.5), 0.0);
+  return MediumPoint(volume_extinction * mapped.a, volume_albedo * mapped.rgb);
+#else
+  return MediumPoint(volume_extinction * density, volume_albedo);
+#endif
+}
 
 vec3 medium_world(vec3 local) { return (volume_to_world * vec4(local, 1.0)).xyz; }
 
 // Source radiance C0 where `visible` is the share of each light that reaches the point.
-vec3 medium_source(vec3 local, vec4 visible) {
-#ifdef UNIFORM_SOURCE
+vec3 medium_source(vec3 local, vec3 albedo, vec4 visible) {
+#if defined(UNIFORM_SOURCE)
   // No light depends on the place, so neither does the source.
-  return medium_radiance(vec3(0.0), volume_albedo, volume_emission, vec4(1.0));
+  return medium_radiance(vec3(0.0), albedo, volume_emission, vec4(1.0));
+#elif defined(LIGHT_SPACE)
+  float irradiance = textureLod(scattering_map, local, 0.0).r * visible[volume_light];
+  return volume_emission + albedo * (ambient_count.rgb + lights[volume_light].intensity_inner.rgb * (irradiance / (4.0 * kPi)));
 #else
-  return medium_radiance(medium_world(local), volume_albedo, volume_emission, visible);
+  return medium_radiance(medium_world(local), albedo, volume_emission, visible);
 #endif
 }
 
 vec4 medium_visibility(vec3 local) {
-#ifdef SHADOWS
+#if defined(SHADOWS) && defined(LIGHT_SPACE)
+  vec4 visible = vec4(1.0);
+  visible[volume_light] = light_visibility(volume_light, medium_world(local));
+  return visible;
+#elif defined(SHADOWS)
   return light_visibilities(medium_world(local));
 #else
   return vec4(1.0);

@@ -8,13 +8,27 @@ flat in vec3 emission;
 
 uniform vec3 eye;
 
+#ifdef SURFACE_POINTS
+// What the reference shades by itself.
+layout(location = 0) out vec4 point_albedo;
+layout(location = 1) out float eye_distance_m;
+layout(location = 2) out vec4 point_normal;
+layout(location = 3) out vec4 point_emission;
+#else
 layout(location = 0) out vec4 radiance;
 layout(location = 1) out float eye_distance_m;
+#endif
 
 void main() {
   vec3 n = normalize(world_normal);
   vec3 to_eye = eye - world_position;
   if (dot(n, to_eye) < 0.0) n = -n;
-  radiance = vec4(surface_radiance(world_position, n, albedo, emission, light_visibilities(world_position)), 1.0);
   eye_distance_m = length(to_eye);
+#ifdef SURFACE_POINTS
+  point_albedo = vec4(albedo, 1.0);
+  point_normal = vec4(n, 1.0);
+  point_emission = vec4(emission, 1.0);
+#else
+  radiance = vec4(surface_radiance(world_position, n, albedo, emission, light_visibilities(world_position)), 1.0);
+#endif
 }
