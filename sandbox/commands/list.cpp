@@ -8,19 +8,12 @@
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sandbox/papers.hpp"
 
 namespace pellucid::sandbox {
 namespace {
 
 using nlohmann::ordered_json;
-
-struct Paper {
-  std::string_view name, title;
-};
-constexpr Paper kPapers[] = {
-    {"sampling_hulls",
-     "Imagire, Johan, Tamura, Nishita 2007: Anti-aliased and real-time rendering of scenes with light "
-     "scattering effects"}};
 
 ordered_json techniques_json() {
   ordered_json out = ordered_json::array();
@@ -41,7 +34,7 @@ ordered_json scenes_json() {
 
 ordered_json papers_json() {
   ordered_json out = ordered_json::array();
-  for (const Paper& p : kPapers)
+  for (const Paper& p : papers())
     out.push_back({{"name", p.name}, {"title", p.title}});
   return out;
 }
