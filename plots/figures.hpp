@@ -1,11 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include "plots/rows.hpp"
 
 /// Figures by name, drawn from rows of a store (sweeps/store.hpp).
 namespace pellucid::plots {
@@ -24,10 +27,12 @@ std::vector<FigureInfo> figures();
 FigureInfo find_figure(std::string_view name);
 
 /// Draws a named figure to `path` (.svg, .png or .pdf by extension; whole or not at all). It takes the rows of its own
-/// spec; when `rows` has none of them, every row it can use. Failed rows are left out and counted in the chart's note.
+/// spec; when `rows` has none of them, every row it can use; `conditions`
+/// choose further. Failed rows are left out and counted in the chart's note.
 /// Throws InputError for an unknown name (nearest one suggested) or extension, for rows of more than one device or
 /// driver (they are named) and when nothing is left to draw; RuntimeError when the file cannot be written or
 /// rsvg-convert is missing (PNG and PDF).
-void write_figure(std::string_view name, const std::vector<nlohmann::json>& rows, const std::filesystem::path& path);
+void write_figure(std::string_view name, const std::vector<nlohmann::json>& rows, const std::filesystem::path& path,
+                  std::span<const Condition> conditions = {});
 
 }  // namespace pellucid::plots

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+/// From the rows of a store to what a figure draws: chosen, checked, grouped.
+namespace pellucid::plots {
+
+/// Rows that can be drawn, and how many could not.
+struct Rows {
+  std::vector<const nlohmann::json*> kept;  ///< each measurement once; points into what they were chosen from
+  std::size_t failed = 0;                   ///< left out: the point failed
+  std::size_t incomplete = 0;               ///< left out: a value was not measured (timing off, no such metric)
+  std::size_t unconverged = 0;              ///< kept, but the frame time's interval is wider than asked for
+};
+
+/// name=value, compared as text, numbers by value.
+struct Condition {
+  std::string field, value;
+};
+
+/// The rows that meet every condition and have a number in each of `fields`. A point that stands in several blocks or
+/// specs counts once. Throws InputError for a field that no row has (nearest name), for a condition that no row meets
+/// (with the values there are), and for rows of more than one device or driver.
+Rows choose_rows(const std::vector<nlohmann::json>& rows, std::span<const Condition> conditions,
+                 std::span<const std::string> fields);
+
+/// A finite number; nothing when the field is absent, null or of another type.
+std::optional<double> number(const nlohmann::json& row, std::string_view field);
+/// "0.5", "true", "fog_forest".
+std::string value_text(const nlohmann::json& value);
+
+/// What was chosen for a point, as against measured: technique, scene, view, size ("720×540") and every parameter.
+std::vector<std::pair<std::string, std::string>> settings(const nlohmann::json& row);
+
+/// Rows that differ in nothing but the settings that a chart shows otherwise.
+struct Group {
+  std::string label;  ///< "sampling hulls, scene.density = 0.5"; the technique alone when nothing else differs
+  std::string technique;
+  std::size_t variant = 0;  ///< counts the groups of one technique
+  std::vector<const nlohmann::json*> rows;
+};
+
+/// Groups in the order in which they first appear. `own` names the settings that do not divide.
+std::vector<Group> group_rows(const Rows&, std::span<const std::string> own);
+
+/// What a chart's note says of where its rows come from: scene, size, device, clock if `timed`, and how many rows were
+/// left out.
+std::string provenance_note(const Rows&, bool timed);
+
+}  // namespace pellucid::plots
