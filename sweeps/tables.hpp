@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,7 +47,8 @@ using TableRecord = std::vector<std::pair<std::string, std::optional<Value>>>;
 
 struct Table {
   TableInfo info;
-  std::vector<TableRow> rows;        ///< the first is the heading; all have equally many cells
+  std::vector<TableRow> rows;        ///< all have equally many cells
+  std::size_t heading_rows = 1;      ///< so many of the first name the columns
   std::vector<TableRecord> records;  ///< one for each column
   std::vector<std::string> notes;    ///< whose numbers these are, and what to mind
   std::string sweep;                 ///< the sweep that ours are from; empty when there is none of ours
@@ -66,10 +68,5 @@ TableFormat parse_table_format(std::string_view name);
 /// markdown: aligned, notes below. csv: RFC 4180, numbers in full, no notes. latex: a booktabs table with caption and
 /// notes. json: a list of the records. Ends with a newline.
 std::string format_table(const Table&, TableFormat);
-
-/// RFC 4180: a heading and one record for each row, CRLF at the ends. Columns come in a fixed order: what tells a row
-/// apart, parameters, times, metrics, the rest, each group by name where it has no order of its own; objects are opened
-/// (`pass_ms.fog`). A field that a row lacks is empty.
-std::string rows_to_csv(const std::vector<nlohmann::json>& rows);
 
 }  // namespace pellucid::sweeps

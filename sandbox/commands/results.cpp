@@ -1,0 +1,126 @@
+// pellucid results, table.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/scene/atomic_file.hpp"
+#include "gl/error.hpp"
+#include "sandbox/commands/commands.hpp"
+#include "sweeps/csv.hpp"
+#include "sweeps/store.hpp"
+#include "sweeps/tables.hpp"
+
+namespace pellucid::sandbox {
+namespace {
+
+using namespace pellucid::sweeps;
+
+struct ResultsOptions {
+  std::string store, format = "csv";
+};
+
+struct TableOptions {
+  std::string name, store, format = "md", device;
+  std::filesystem::path output;
+};
+
+/// A full disk or a closed pipe is an error, not a short file.
+void print_out(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw RuntimeError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
+
+int results(const ResultsOptions& options) {
+  const std::vector<nlohmann::json> rows = read_rows(options.store);
+  if (options.format == "csv") {
+    print_out(rows_to_csv(rows));
+    return kDone;
+  }
+  const nlohmann::json all(rows);
+  print_out(all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return kDone;
+}
+
+int table(const TableOptions& options) {
+  const TableFormat format = parse_table_format(options.format);
+  const TableInfo info = find_table(options.name);
+  if (!options.device.empty() && options.store.empty()) {
+    throw InputError("--device-name chooses among a store's devices; --store S.db is missing");
+  }
+  const std::vector<nlohmann::json> rows =
+      options.store.empty() ? std::vector<nlohmann::json>{} : read_rows(options.store);
+  const Table filled = make_table(info.name, rows, options.device);
+  const std::string text = format_table(filled, format);
+  if (options.output.empty()) {
+    print_out(text);
+  } else {
+    write_text_file(options.output, text);
+  }
+  if (filled.sweep.empty()) {
+    fmt::print(stderr, "{}; to fill the table: pellucid sweep run {} --store {}\n",
+               options.store.empty() ? "no store was named, so the numbers are the paper's alone"
+                                     : fmt::format("{} has no rows of {}", options.store, info.spec),
+               info.spec, options.store.empty() ? "S.db" : options.store);
+  } else if (format == TableFormat::csv || format == TableFormat::json) {
+    for (const std::string& note : filled.notes)
+      fmt::print(stderr, "note: {}\n", note);
+  }
+  return kDone;
+}
+
+void add_json_flag(CLI::App& app, std::string& format) {
+  app.add_flag_callback(
+         "--json", [&format] { format = "json"; }, "the same as --format json")
+      ->excludes("--format");
+}
+
+std::string names_text() {
+  std::string text = "Tables:\n";
+  for (const TableInfo& info : tables())
+    text += fmt::format("  {:<24} {}\n", info.name, info.source);
+  return text;
+}
+
+}  // namespace
+
+void add_results(CLI::App& root, std::vector<Command>& commands) {
+  auto rows = std::make_shared<ResultsOptions>();
+  CLI::App* results_app = root.add_subcommand("results", "Print every row of a store, failed ones included");
+  results_app->add_option("store", rows->store, "the SQLite file of a sweep")->required();
+  results_app->add_option("--format", rows->format, "csv or json")
+      ->check(CLI::IsMember({"csv", "json"}))
+      ->capture_default_str();
+  add_json_flag(*results_app, rows->format);
+  results_app->footer(
+      "Examples:\n"
+      "  pellucid results results/hulls.db > hulls.csv\n"
+      "  pellucid results results/hulls.db --format json | jq '.[] | [.hulls, .samples, .fps]'");
+  commands.push_back({results_app, [rows] { return results(*rows); }});
+
+  auto options = std::make_shared<TableOptions>();
+  CLI::App* table_app = root.add_subcommand("table", "Print a paper's table, the published numbers beside ours");
+  table_app->add_option("name", options->name, "the table, see below")->required();
+  table_app->add_option("--store", options->store,
+                        "where our numbers come from; without it only the paper's are shown");
+  table_app->add_option("--format", options->format, "md, csv, latex (booktabs) or json")
+      ->check(CLI::IsMember({"md", "csv", "latex", "json"}))
+      ->capture_default_str();
+  add_json_flag(*table_app, options->format);
+  table_app->add_option("--device-name", options->device,
+                        "take the rows whose device and driver contain this, where a store holds several");
+  table_app->add_option("-o,--output", options->output, "write to this file instead of standard output");
+  table_app->footer(names_text() +
+                    "\nExamples:\n"
+                    "  pellucid sweep run sampling_hulls_table1 --store hulls.db\n"
+                    "  pellucid table sampling_hulls.table1 --store hulls.db\n"
+                    "  pellucid table sampling_hulls.table1 --store hulls.db --format latex -o table1.tex");
+  commands.push_back({table_app, [options] { return table(*options); }});
+}
+
+}  // namespace pellucid::sandbox
