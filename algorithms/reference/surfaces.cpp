@@ -2,173 +2,83 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <memory>
-#include <type_traits>
-#include <vector>
+#include <optional>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>  // Debian 12
-#endif
-#include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
+#include "algorithms/reference/geometry.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
-#include "gl/error.hpp"
 
 namespace pellucid {
 namespace {
-
-struct ReleaseDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
-using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
-
-void check_embree(RTCDevice device, const char* doing) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error != RTC_ERROR_NONE) {
-    throw RuntimeError(fmt::format("Embree failed while {} (error {})", doing, static_cast<int>(error)));
-  }
-}
-
-struct Hit {
-  const Instance* instance = nullptr;  // null: nothing was hit
-  glm::uvec3 triangle{0};
-  glm::dvec3 weights{0.0};  // barycentric
-  double distance = std::numeric_limits<double>::infinity();
-};
-
-// One bounding-volume hierarchy for each mesh and one over their instances.
-class Geometry {
- public:
-  explicit Geometry(const Scene& scene) : scene_(&scene), device_(rtcNewDevice(nullptr)) {
-    if (!device_) throw RuntimeError("Embree gives no device on this machine");
-    meshes_.resize(scene.meshes.size());
-    root_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(root_.get(), RTC_SCENE_FLAG_ROBUST);
-    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-      const Instance& instance = scene.instances[i];
-      const auto mesh = static_cast<std::size_t>(instance.mesh);
-      if (scene.meshes[mesh].triangles.empty()) continue;
-      if (!meshes_[mesh]) meshes_[mesh] = build(scene.meshes[mesh]);
-      RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-      rtcSetGeometryInstancedScene(geometry, meshes_[mesh].get());
-      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &instance.to_world[0][0]);
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometryByID(root_.get(), geometry, static_cast<unsigned>(i));
-      rtcReleaseGeometry(geometry);
-    }
-    rtcCommitScene(root_.get());
-    check_embree(device_.get(), "building the scene");
-  }
-
-  Hit intersect(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) const {
-    RTCRayHit query{};
-    query.ray.org_x = static_cast<float>(origin.x);
-    query.ray.org_y = static_cast<float>(origin.y);
-    query.ray.org_z = static_cast<float>(origin.z);
-    query.ray.dir_x = static_cast<float>(direction.x);
-    query.ray.dir_y = static_cast<float>(direction.y);
-    query.ray.dir_z = static_cast<float>(direction.z);
-    query.ray.tnear = static_cast<float>(begin);
-    query.ray.tfar = static_cast<float>(end);
-    query.ray.mask = ~0U;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(root_.get(), &query);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(root_.get(), &context, &query);
-#endif
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-
-    Hit hit;
-    hit.instance = &scene_->instances[query.hit.instID[0]];
-    const Mesh& mesh = scene_->meshes[static_cast<std::size_t>(hit.instance->mesh)];
-    hit.triangle = mesh.triangles[query.hit.primID];
-    refine(hit, mesh, origin, direction, query);
-    return hit;
-  }
-
- private:
-  SceneHandle build(const Mesh& mesh) const {
-    SceneHandle result(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(result.get(), RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree's own buffers are padded as it needs; the mesh's vectors are not.
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                             mesh.positions.size());
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                                            mesh.triangles.size());
-    if (vertices == nullptr || indices == nullptr) {
-      rtcReleaseGeometry(geometry);
-      throw RuntimeError(fmt::format("Embree has no memory for mesh '{}'", mesh.name));
-    }
-    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(vertices));
-    std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<glm::uvec3*>(indices));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(result.get(), geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(result.get());
-    check_embree(device_.get(), "building a mesh");
-    return result;
-  }
-
-  // Embree finds the triangle in single precision; where the ray meets it is solved again in double.
-  static void refine(Hit& hit, const Mesh& mesh, const glm::dvec3& origin, const glm::dvec3& direction,
-                     const RTCRayHit& query) {
-    const glm::dmat4 to_world(hit.instance->to_world);
-    const auto corner = [&](int i) {
-      return glm::dvec3(to_world * glm::dvec4(glm::dvec3(mesh.positions[hit.triangle[i]]), 1.0));
-    };
-    const glm::dvec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
-    const glm::dvec3 p = glm::cross(direction, ac);
-    const double determinant = glm::dot(ab, p);
-    const double scale = glm::length(ab) * glm::length(ac);
-    if (std::abs(determinant) > 1e-9 * scale) {
-      const glm::dvec3 from_a = origin - a, q = glm::cross(from_a, ab);
-      const double u = glm::dot(from_a, p) / determinant, v = glm::dot(direction, q) / determinant;
-      hit.weights = {1.0 - u - v, u, v};
-      hit.distance = glm::dot(ac, q) / determinant;
-    } else {  // edge-on: nothing to gain
-      const double u = static_cast<double>(query.hit.u), v = static_cast<double>(query.hit.v);
-      hit.weights = {1.0 - u - v, u, v};
-      hit.distance = static_cast<double>(query.ray.tfar);
-    }
-  }
-
-  const Scene* scene_;
-  DeviceHandle device_;
-  std::vector<SceneHandle> meshes_;  // null where no instance uses the mesh
-  SceneHandle root_;
-};
 
 glm::dvec3 interpolate(const std::vector<glm::vec3>& values, const Hit& hit) {
   return hit.weights.x * glm::dvec3(values[hit.triangle.x]) + hit.weights.y * glm::dvec3(values[hit.triangle.y]) +
          hit.weights.z * glm::dvec3(values[hit.triangle.z]);
 }
 
-glm::dvec3 shade(const Scene& scene, const Illumination& light, const Hit& hit, const glm::dvec3& origin,
-                 const glm::dvec3& direction) {
+// What is seen at a pixel, ready to be lit.
+struct SurfacePoint {
+  glm::dvec3 position{0.0};
+  glm::dvec3 normal{0.0};  // unit, turned to the viewer
+  glm::dvec3 albedo{0.0}, emission{0.0};
+  double distance = 0.0;  // from the eye
+};
+
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& origin, const glm::dvec3& direction) {
   const Instance& instance = *hit.instance;
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
   const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+  SurfacePoint point;
+  point.distance = hit.distance;
+  point.position = origin + hit.distance * direction;
   const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(glm::dmat3(instance.to_world)));
-  glm::dvec3 normal = glm::normalize(normal_to_world * interpolate(mesh.normals, hit));
-  if (glm::dot(normal, direction) > 0.0) normal = -normal;
-  glm::dvec3 albedo = glm::dvec3(material.albedo) * glm::dvec3(instance.tint);
-  if (!mesh.colors.empty()) albedo *= interpolate(mesh.colors, hit);
-  return light.surface_radiance(origin + hit.distance * direction, normal, albedo, glm::dvec3(material.emission));
+  point.normal = glm::normalize(normal_to_world * interpolate(mesh.normals, hit));
+  if (glm::dot(point.normal, direction) > 0.0) point.normal = -point.normal;
+  point.albedo = glm::dvec3(material.albedo) * glm::dvec3(instance.tint);
+  if (!mesh.colors.empty()) point.albedo *= interpolate(mesh.colors, hit);
+  point.emission = glm::dvec3(material.emission);
+  return point;
+}
+
+// Lights a point with exact shadows. `geometry` null: no light casts one.
+glm::dvec3 shade(const Illumination& light, const Geometry* geometry, const SurfacePoint& point) {
+  // Embree's ray starts at the position rounded to single precision, and a raster position errs by as much again, so
+  // it sets out this far above the surface: some hundred roundings of the coordinates that went into it.
+  const glm::dvec3 size = glm::abs(point.position);
+  const double clearance = 1e-5 * (point.distance + std::max({size.x, size.y, size.z}));
+  const glm::dvec3 start = point.position + clearance * point.normal;
+  return light.surface_radiance(point.position, point.normal, point.albedo, point.emission,
+                                [&](std::size_t index, const Incidence& in) {
+                                  return geometry == nullptr || !light.casts_shadow(index) ||
+                                         !geometry->occluded(start, in.to_light, 0.0, in.distance * (1.0 - 1e-6));
+                                });
+}
+
+void write(float* pixel, const glm::dvec3& radiance) {
+  for (int c = 0; c < 3; ++c)
+    pixel[c] = static_cast<float>(radiance[c]);
+}
+
+glm::dvec3 read(const float* pixel) {
+  return {static_cast<double>(pixel[0]), static_cast<double>(pixel[1]), static_cast<double>(pixel[2])};
+}
+
+std::size_t pixel_index(const Camera& camera, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
+}
+
+// Calls visit(x, y, direction through the pixel's centre) for all pixels, in parallel.
+template <class F>
+void for_pixels(const Camera& camera, F visit) {
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, camera.height, 16, 0, camera.width, 64), [&](const auto& tile) {
+    for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
+      for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
+        visit(x, y, camera.ray_direction(x + 0.5, y + 0.5));
+    }
+  });
 }
 
 }  // namespace
@@ -183,24 +93,45 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera) {
   const glm::dvec3 origin(camera.view.eye);
   const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.view.target) - origin);
 
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, camera.height, 16, 0, camera.width, 64), [&](const auto& tile) {
-    for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
-      for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-        const glm::dvec3 direction = camera.ray_direction(x + 0.5, y + 0.5);
-        // The clipping planes are at constant view depth.
-        const double per_depth = 1.0 / glm::dot(direction, forward);
-        const Hit hit = geometry.intersect(origin, direction, static_cast<double>(camera.view.near_m) * per_depth,
-                                           static_cast<double>(camera.view.far_m) * per_depth);
-        const glm::dvec3 radiance = hit.instance != nullptr
-                                        ? shade(scene, light, hit, origin, direction)
-                                        : glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
-        float* pixel = layer.radiance.at(x, y);
-        for (int c = 0; c < 3; ++c)
-          pixel[c] = static_cast<float>(radiance[c]);
-        layer.distance_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
-                         static_cast<std::size_t>(x)] = hit.distance;
-      }
+  for_pixels(camera, [&](int x, int y, const glm::dvec3& direction) {
+    // The clipping planes are at constant view depth.
+    const double per_depth = 1.0 / glm::dot(direction, forward);
+    const Hit hit = geometry.intersect(origin, direction, static_cast<double>(camera.view.near_m) * per_depth,
+                                       static_cast<double>(camera.view.far_m) * per_depth);
+    write(layer.radiance.at(x, y), hit.instance != nullptr
+                                       ? shade(light, &geometry, surface_at(scene, hit, origin, direction))
+                                       : glm::dvec3(scene.environment.radiance(glm::vec3(direction))));
+    layer.distance_m[pixel_index(camera, x, y)] = hit.distance;
+  });
+  return layer;
+}
+
+SurfaceLayer shade_surfaces(const Scene& scene, const Camera& camera, const SurfacePoints& points) {
+  assert(points.distance_m.size() == static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  for ([[maybe_unused]] const Image* image : {&points.albedo, &points.normal, &points.emission})
+    assert(image->width == camera.width && image->height == camera.height && image->channels >= 3);
+
+  const Illumination light(scene);
+  std::optional<Geometry> geometry;
+  for (const Light& emitter : scene.lights) {
+    if (emitter.casts_shadow && !geometry) geometry.emplace(scene);
+  }
+  SurfaceLayer layer;
+  layer.radiance = Image(camera.width, camera.height, 3);
+  layer.distance_m = points.distance_m;
+  const glm::dvec3 origin(camera.view.eye);
+  for_pixels(camera, [&](int x, int y, const glm::dvec3& direction) {
+    SurfacePoint point;
+    point.distance = points.distance_m[pixel_index(camera, x, y)];
+    if (std::isinf(point.distance)) {
+      write(layer.radiance.at(x, y), glm::dvec3(scene.environment.radiance(glm::vec3(direction))));
+      return;
     }
+    point.position = origin + point.distance * direction;
+    point.normal = read(points.normal.at(x, y));
+    point.albedo = read(points.albedo.at(x, y));
+    point.emission = read(points.emission.at(x, y));
+    write(layer.radiance.at(x, y), shade(light, geometry ? &*geometry : nullptr, point));
   });
   return layer;
 }
