@@ -89,16 +89,6 @@ void evaluate_forest(const SceneDescription& description, Scene& scene) {
   check_distinct(description, scene.materials, "material");
 }
 
-glm::dmat3 turn(const SceneDescription& scene, const Placement& placement, Place place, double time_s) {
-  if (glm::length(placement.rotation_axis) < 1e-9) contradict(scene, place, "rotation_axis must not be zero");
-  const glm::dmat3 turned = rotation(placement.rotation_axis, placement.rotation_deg);
-  return placement.spin ? placement.spin->at(time_s) * turned : turned;
-}
-
-glm::dvec3 position_at(const glm::dvec3& position, const std::optional<MotionPath>& path, double time_s) {
-  return path ? path->at(time_s) : position;
-}
-
 void evaluate_instance(const SceneDescription& description, std::size_t i, double time_s, Scene& scene) {
   const InstanceDescription& from = description.instances[i];
   glm::dmat3 axes = turn(description, from.placement, from.place, time_s);
@@ -113,7 +103,7 @@ void evaluate_instance(const SceneDescription& description, std::size_t i, doubl
 
 void evaluate_light(const SceneDescription& description, std::size_t i, double time_s, Scene& scene) {
   const LightDescription& from = description.lights[i];
-  glm::dvec3 direction = from.direction;
+  glm::dvec3 direction = position_at(from.direction, from.direction_path, time_s);
   if (from.by_angles) {
     // Where the light comes from: the azimuth turns from −z to +x, the elevation lifts towards +y.
     const double azimuth = glm::radians(from.azimuth_deg);
@@ -137,7 +127,8 @@ void evaluate_light(const SceneDescription& description, std::size_t i, double t
                      glm::vec3(direction),
                      glm::vec3(from.intensity),
                      static_cast<float>(from.inner_angle_deg),
-                     static_cast<float>(from.outer_angle_deg)};
+                     static_cast<float>(from.outer_angle_deg),
+                     from.casts_shadow};
 }
 
 void evaluate_view(const SceneDescription& description, std::size_t i, double time_s, Scene& scene) {
@@ -166,67 +157,6 @@ void evaluate_view(const SceneDescription& description, std::size_t i, double ti
                     static_cast<float>(from.far_m)};
 }
 
-// ---- the medium ----
-
-void evaluate_voxels(const SceneDescription& description, Scene& scene) {
-  const VolumeDescription& from = *description.volume;
-  const double count = from.voxels.x * from.voxels.y * from.voxels.z;
-  constexpr double kMaxVoxels = 1 << 30;
-  if (count > kMaxVoxels) {
-    contradict(description, from.place,
-               fmt::format("volume: {} x {} x {} voxels; at most 2^30 are allowed", from.voxels.x, from.voxels.y,
-                           from.voxels.z));
-  }
-  Volume& volume = *scene.volume;
-  volume.name = from.name;
-  volume.size = glm::ivec3(whole(from.voxels.x), whole(from.voxels.y), whole(from.voxels.z));
-  const auto density = static_cast<float>(from.density);
-  if (from.kind == VolumeKind::constant) {
-    volume.density = make_constant_density(volume.size, density);
-    return;
-  }
-  if (from.kind == VolumeKind::ball) {
-    volume.density = make_ball_density(volume.size);
-  } else {
-    FogOptions options;
-    options.seed = static_cast<std::uint32_t>(from.seed);
-    options.octaves = whole(from.octaves);
-    options.frequency = static_cast<float>(from.frequency);
-    options.height_falloff = static_cast<float>(from.height_falloff);
-    options.contrast = static_cast<float>(from.contrast);
-    volume.density = make_fog_density(volume.size, options);
-  }
-  if (density == 1.0F) return;
-  for (float& d : volume.density)
-    d *= density;
-}
-
-void evaluate_medium(const SceneDescription& description, double time_s, Scene& scene) {
-  const VolumeDescription& from = *description.volume;
-  Volume& volume = *scene.volume;
-  glm::dmat3 edges(1.0);
-  glm::dvec3 corner = from.min;
-  if (from.by_corners) {
-    const glm::dvec3 size = from.max - from.min;
-    if (!(size.x > 0 && size.y > 0 && size.z > 0)) {
-      contradict(description, from.place, "volume: min must be below max along every axis");
-    }
-    for (int c = 0; c < 3; ++c)
-      edges[c] *= size[c];
-  } else {
-    edges = turn(description, from.placement, from.place, time_s);
-    for (int c = 0; c < 3; ++c)
-      edges[c] *= from.size[c];
-    corner = position_at(from.placement.position, from.placement.position_path, time_s) - edges * glm::dvec3(0.5);
-  }
-  glm::dmat4 to_world(edges);
-  to_world[3] = glm::dvec4(corner, 1.0);
-  volume.to_world = glm::mat4(to_world);
-  volume.extinction = static_cast<float>(from.extinction);
-  volume.albedo = glm::vec3(from.albedo);
-  volume.emission = glm::vec3(from.emission);
-}
-
 void evaluate_environment(SceneDescription& description, Scene& scene) {
   EnvironmentDescription& from = description.environment;
   if (from.image) scene.environment.image = std::move(*from.image);
@@ -238,6 +168,16 @@ void evaluate_environment(SceneDescription& description, Scene& scene) {
 }
 
 }  // namespace
+
+glm::dmat3 turn(const SceneDescription& scene, const Placement& placement, Place place, double time_s) {
+  if (glm::length(placement.rotation_axis) < 1e-9) contradict(scene, place, "rotation_axis must not be zero");
+  const glm::dmat3 turned = rotation(placement.rotation_axis, placement.rotation_deg);
+  return placement.spin ? placement.spin->at(time_s) * turned : turned;
+}
+
+glm::dvec3 position_at(const glm::dvec3& position, const std::optional<MotionPath>& path, double time_s) {
+  return path ? path->at(time_s) : position;
+}
 
 std::vector<Affected> all_parts(const SceneDescription& description) {
   std::vector<Affected> parts;
@@ -252,6 +192,7 @@ std::vector<Affected> all_parts(const SceneDescription& description) {
   add(Part::light, description.lights.size());
   add(Part::view, description.views.size());
   add(Part::voxels, description.volume ? 1 : 0);
+  add(Part::scattering, description.volume ? 1 : 0);
   add(Part::medium, description.volume ? 1 : 0);
   add(Part::environment, 1);
   add(Part::ambient, 1);
@@ -277,6 +218,8 @@ void evaluate(SceneDescription& description, Affected what, double time_s, Scene
       return evaluate_view(description, what.index, time_s, scene);
     case Part::voxels:
       return evaluate_voxels(description, scene);
+    case Part::scattering:
+      return evaluate_scattering(description, scene);
     case Part::medium:
       return evaluate_medium(description, time_s, scene);
     case Part::environment:

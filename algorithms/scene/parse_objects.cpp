@@ -13,23 +13,6 @@ namespace {
 
 constexpr NumberRange kSegments{3, 2048};
 
-/// The position of `key`'s text among `things`, by name.
-template <class Things>
-int find_named(TableReader& reader, std::string_view key, const Things& things, std::string_view kind) {
-  std::string name;
-  reader.text(key, name, Need::required);
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    if (things[i].name == name) return static_cast<int>(i);
-    names.push_back(things[i].name);
-  }
-  const std::string near = nearest_name(name, names);
-  reader.fail(key, fmt::format("there is no {} '{}'{}", kind, name,
-                               !near.empty()   ? fmt::format("; did you mean '{}'?", near)
-                               : names.empty() ? ""
-                                               : fmt::format("; there are {}", fmt::join(names, ", "))));
-}
-
 void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, MeshDescription& mesh,
                      SceneDescription& scene) {
   reader.set_affected(std::nullopt);
@@ -89,6 +72,15 @@ void parse_shape(TableReader& reader, MeshDescription& mesh) {
 }
 
 }  // namespace
+
+void fail_unknown(const TableReader& reader, std::string_view key, const std::string& name,
+                  const std::vector<std::string>& known, std::string_view kind) {
+  const std::string near = nearest_name(name, known);
+  reader.fail(key, fmt::format("there is no {} '{}'{}", kind, name,
+                               !near.empty()   ? fmt::format("; did you mean '{}'?", near)
+                               : known.empty() ? ""
+                                               : fmt::format("; there are {}", fmt::join(known, ", "))));
+}
 
 void parse_materials(TableReader& root, SceneDescription& scene) {
   for (auto& [name, reader] : root.named_tables("materials")) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -58,6 +60,14 @@ const DriveTarget& find_target(TableReader& reader, const std::string& wanted, P
                                  near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
 }
 
+bool needs_precomputation(const DriveTarget& target) {
+  const auto heavy = [](const Affected& affected) {
+    constexpr Part kHeavy[] = {Part::mesh, Part::forest, Part::voxels, Part::scattering};
+    return std::find(std::begin(kHeavy), std::end(kHeavy), affected.part) != std::end(kHeavy);
+  };
+  return heavy(target.affected) || std::any_of(target.also.begin(), target.also.end(), heavy);
+}
+
 }  // namespace
 
 void parse_parameters(TableReader& root, SceneDescription& scene) {
@@ -84,8 +94,7 @@ void parse_parameters(TableReader& root, SceneDescription& scene) {
           reader.fail(place,
                       fmt::format("{}.drives: {} is an integer, which a parameter can only set", reader.path(), path));
         }
-        const Part part = target.affected.part;
-        if (part == Part::mesh || part == Part::forest || part == Part::voxels) info.when = Change::precompute;
+        if (needs_precomputation(target)) info.when = Change::precompute;
       }
       reader.text("doc", info.doc, Need::required);
       reader.text("unit", info.unit);

@@ -52,4 +52,14 @@ std::vector<float> make_fog_density(const glm::ivec3& size, const FogOptions&);
 /// 1a).
 std::vector<float> make_ball_density(const glm::ivec3& size);
 
+/// A spot's cone of light in a box around it: local z along the light from `near_m` to `range_m` from it, x and y
+/// across the cone's widest section, its axis in the middle.
+struct ConeShape {
+  double near_m = 0.05, range_m = 1;
+  double inner_angle_deg = 20, outer_angle_deg = 30;  ///< as the Light's; below 90
+};
+/// Irradiance over intensity [1/m²] at the voxels' centres: the spot's falloff over the squared distance. Nothing else
+/// of the light matters, neither where it is nor where it points (Imagire et al. 2007, Sec. 5 and Fig. 11).
+std::vector<float> make_cone_scattering(const glm::ivec3& size, const ConeShape&);
+
 }  // namespace pellucid

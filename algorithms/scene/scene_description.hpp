@@ -60,9 +60,12 @@ struct LightDescription {
   bool by_angles = false;  ///< the direction is given by where the light comes from
   double azimuth_deg = 0, elevation_deg = 45;
   glm::dvec3 direction{0.0, -1.0, 0.0};
+  std::optional<MotionPath> direction_path;  ///< instead of `direction`
   std::optional<Spin> spin;
   glm::dvec3 intensity{1.0};
   double inner_angle_deg = 20, outer_angle_deg = 30;
+  bool casts_shadow = false;
+  bool animated() const { return position_path || direction_path || spin; }
 };
 
 struct ViewDescription {
@@ -80,6 +83,12 @@ struct ForestDescription {
   double trees = 300, clearing_radius = 4, relief_m = 1.5, seed = 1;
 };
 
+struct TransferDescription {
+  Place place;
+  double density = 0, extinction = 0;
+  glm::dvec3 albedo{1.0};
+};
+
 enum class VolumeKind { constant, fog, ball };
 struct VolumeDescription {
   std::string name;
@@ -92,6 +101,9 @@ struct VolumeDescription {
   glm::dvec3 size{1.0};
   double density = 1, extinction = 1;
   glm::dvec3 albedo{1.0}, emission{0.0};
+  std::deque<TransferDescription> transfer;
+  int light = -1;  ///< in whose space the box lies: it encloses the cone between `near_m` and `range_m`
+  double near_m = 0.05, range_m = 1;
   double seed = 1, octaves = 4, frequency = 3, height_falloff = 3, contrast = 0.7;
 };
 
@@ -165,9 +177,30 @@ auto located(const TableReader& reader, std::string_view key, Work&& work) {
   }
 }
 
+[[noreturn]] void fail_unknown(const TableReader&, std::string_view key, const std::string& name,
+                               const std::vector<std::string>& known, std::string_view kind);
+/// The position of `key`'s text among `things`, by name.
+template <class Things>
+int find_named(TableReader& reader, std::string_view key, const Things& things, std::string_view kind) {
+  std::string name;
+  reader.text(key, name, Need::required);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (things[i].name == name) return static_cast<int>(i);
+    names.push_back(things[i].name);
+  }
+  fail_unknown(reader, key, name, names, kind);
+}
 /// Evaluates one part at a time of the scene. Throws InputError at the part's place when its numbers contradict each
 /// other (near_m ≥ far_m).
 void evaluate(SceneDescription&, Affected, double time_s, Scene&);
+void evaluate_voxels(const SceneDescription&, Scene&);
+/// The scattering at the voxels of a volume in a light's space; its box is left alone.
+void evaluate_scattering(const SceneDescription&, Scene&);
+void evaluate_medium(const SceneDescription&, double time_s, Scene&);
+/// Shared by instances and the volume.
+glm::dmat3 turn(const SceneDescription&, const Placement&, Place, double time_s);
+glm::dvec3 position_at(const glm::dvec3& position, const std::optional<MotionPath>&, double time_s);
 /// Every part, in order.
 std::vector<Affected> all_parts(const SceneDescription&);
 

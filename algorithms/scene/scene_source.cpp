@@ -126,7 +126,9 @@ std::vector<Affected> SceneSource::affected_by(std::size_t parameter) const {
   if (parameter == time_index_) parts.insert(description_->animated.begin(), description_->animated.end());
   for (const Driven& driven : driven_) {
     for (const auto* drives : {&driven.set, &driven.scale, &driven.add}) {
-      if (std::find(drives->begin(), drives->end(), parameter) != drives->end()) parts.insert(driven.target->affected);
+      if (std::find(drives->begin(), drives->end(), parameter) == drives->end()) continue;
+      parts.insert(driven.target->affected);
+      parts.insert(driven.target->also.begin(), driven.target->also.end());
     }
   }
   return {parts.begin(), parts.end()};

@@ -132,8 +132,14 @@ double TableReader::scalar(const toml::node& node, const std::string& shown, Num
 void TableReader::add_target(std::string path, std::vector<double*> numbers, NumberRange range, bool integer,
                              const toml::node* node) {
   if (!affected_) return;
-  targets_->push_back({std::move(path), std::move(numbers), range, integer, node != nullptr,
-                       node != nullptr ? place_of(*node) : place_of_table(), *affected_});
+  targets_->push_back({std::move(path),
+                       std::move(numbers),
+                       range,
+                       integer,
+                       node != nullptr,
+                       node != nullptr ? place_of(*node) : place_of_table(),
+                       *affected_,
+                       {}});
 }
 
 void TableReader::number(std::string_view key, double& value, NumberRange range, Need need) {

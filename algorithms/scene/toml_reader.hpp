@@ -50,7 +50,7 @@ inline constexpr NumberRange kRadiance{0, 1e9};
 inline constexpr NumberRange kAngleDeg{-36000, 36000};
 
 /// The parts of a scene that are evaluated separately, in this order.
-enum class Part { mesh, forest, material, instance, light, view, voxels, medium, environment, ambient };
+enum class Part { mesh, forest, material, instance, light, view, voxels, scattering, medium, environment, ambient };
 struct Affected {
   Part part = Part::ambient;
   std::size_t index = 0;
@@ -66,6 +66,7 @@ struct DriveTarget {
   bool given = false;  ///< by the file, at `place`; else the default
   Place place;
   Affected affected;
+  std::vector<Affected> also;  ///< what else changes, as a volume that follows a light
 };
 
 enum class Need { optional, required };
