@@ -1,5 +1,7 @@
 #include "algorithms/forward_pass.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -10,11 +12,24 @@ struct Vertex {
   glm::vec3 position, normal, color;
 };
 
-struct InstanceAttributes {
-  glm::mat4 to_world;
-  glm::vec3 normal_to_world[3];
-  glm::vec3 albedo, emission;
-};
+// Of all cameras and lights of a frame the culled instances are kept: a point light has six.
+constexpr std::size_t kKeptViews = 1 + 6 * kMaxLights;
+
+// Nothing of the box can be seen when all its corners lie beyond one plane of the clip volume. The far plane is left
+// out, since the background lies on it.
+bool outside(const glm::mat4& to_clip, const glm::vec3& min, const glm::vec3& max) {
+  std::array<int, 5> beyond{};
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec4 p = to_clip * glm::vec4((i & 1) != 0 ? max.x : min.x, (i & 2) != 0 ? max.y : min.y,
+                                            (i & 4) != 0 ? max.z : min.z, 1.0F);
+    beyond[0] += p.x < -p.w ? 1 : 0;
+    beyond[1] += p.x > p.w ? 1 : 0;
+    beyond[2] += p.y < -p.w ? 1 : 0;
+    beyond[3] += p.y > p.w ? 1 : 0;
+    beyond[4] += p.z < -p.w ? 1 : 0;
+  }
+  return std::find(beyond.begin(), beyond.end(), 8) != beyond.end();
+}
 
 // lighting.glsl's std140 block.
 struct LightBlock {
@@ -29,58 +44,79 @@ struct LightBlock {
 ForwardPass::ForwardPass(const Scene& scene)
     : lights_("lights", sizeof(LightBlock), GL_DYNAMIC_DRAW), fullscreen_("fullscreen") {
   upload_meshes(scene);
-  upload_instances(scene);
+  gather_instances(scene);
   upload_lights(scene);
   upload_environment(scene);
   revision_ = scene.revision();
 }
 
-void ForwardPass::update(const Scene& scene) {
-  if (scene.revision() == revision_) return;
+void ForwardPass::update(const Scene& scene, bool meshes) {
+  if (scene.revision() == revision_ && !meshes) return;
   revision_ = scene.revision();
-  if (scene.meshes.size() != batches_.size()) upload_meshes(scene);
-  upload_instances(scene);
+  if (meshes) upload_meshes(scene);
+  gather_instances(scene);
   upload_lights(scene);
   upload_environment(scene);
 }
 
 void ForwardPass::upload_meshes(const Scene& scene) {
-  batches_.clear();
-  batches_.resize(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
+  meshes_.clear();
+  mesh_names_.clear();
+  for (const Mesh& mesh : scene.meshes) {
     std::vector<Vertex> vertices(mesh.positions.size());
+    Vertices out;
+    if (!vertices.empty()) out.min = out.max = mesh.positions.front();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       vertices[i] = {mesh.positions[i], mesh.normals[i], mesh.colors.empty() ? glm::vec3(1.0F) : mesh.colors[i]};
+      out.min = glm::min(out.min, mesh.positions[i]);
+      out.max = glm::max(out.max, mesh.positions[i]);
     }
-    Batch& batch = batches_[m];
-    batch.vertices = gl::Buffer(mesh.name + " vertices", std::span<const Vertex>(vertices));
-    batch.indices = gl::Buffer(mesh.name + " indices", std::span<const glm::uvec3>(mesh.triangles));
-    batch.index_count = static_cast<int>(mesh.triangles.size() * 3);
+    out.vertices = gl::Buffer(mesh.name + " vertices", std::span<const Vertex>(vertices));
+    out.indices = gl::Buffer(mesh.name + " indices", std::span<const glm::uvec3>(mesh.triangles));
+    out.index_count = static_cast<int>(mesh.triangles.size() * 3);
+    meshes_.push_back(std::move(out));
+    mesh_names_.push_back(mesh.name);
   }
 }
 
-void ForwardPass::upload_instances(const Scene& scene) {
-  std::vector<std::vector<InstanceAttributes>> by_mesh(scene.meshes.size());
+void ForwardPass::gather_instances(const Scene& scene) {
+  instances_.assign(scene.meshes.size(), {});
+  visible_.clear();
   for (const Instance& instance : scene.instances) {
     const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
     const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(instance.to_world)));
-    by_mesh[static_cast<std::size_t>(instance.mesh)].push_back(
+    instances_[static_cast<std::size_t>(instance.mesh)].push_back(
         {instance.to_world,
          {normal_to_world[0], normal_to_world[1], normal_to_world[2]},
          material.albedo * instance.tint,
          material.emission});
   }
-  for (std::size_t m = 0; m < batches_.size(); ++m) {
-    Batch& batch = batches_[m];
-    batch.instance_count = static_cast<int>(by_mesh[m].size());
-    if (by_mesh[m].empty()) continue;
-    const std::string& name = scene.meshes[m].name;
-    batch.instances = gl::Buffer(name + " instances", std::span<const InstanceAttributes>(by_mesh[m]));
+}
+
+// Instances outside the view are left out once for a view, not in every pass: a software rasteriser spends more on
+// their vertices than on all that is seen.
+const ForwardPass::Visible& ForwardPass::visible(const glm::mat4& world_to_clip) const {
+  for (const Visible& kept : visible_) {
+    if (kept.world_to_clip == world_to_clip) return kept;
+  }
+  if (visible_.size() >= kKeptViews) visible_.erase(visible_.begin());
+  Visible& out = visible_.emplace_back();
+  out.world_to_clip = world_to_clip;
+  out.batches.resize(meshes_.size());
+  std::vector<InstanceAttributes> seen;
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    seen.clear();
+    for (const InstanceAttributes& instance : instances_[m]) {
+      if (!outside(world_to_clip * instance.to_world, meshes_[m].min, meshes_[m].max)) seen.push_back(instance);
+    }
+    if (seen.empty()) continue;
+    Visible::Batch& batch = out.batches[m];
+    batch.instance_count = static_cast<int>(seen.size());
+    batch.instances = gl::Buffer(mesh_names_[m] + " instances", std::span<const InstanceAttributes>(seen));
     batch.array = gl::VertexArray(
-        name, batch.vertices, sizeof(Vertex),
+        mesh_names_[m], meshes_[m].vertices, sizeof(Vertex),
         {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 3, offsetof(Vertex, color)}},
-        &batch.indices);
+        &meshes_[m].indices);
     const std::size_t normals = offsetof(InstanceAttributes, normal_to_world);
     batch.array.add_instanced(batch.instances, sizeof(InstanceAttributes),
                               {{3, 4, 0},
@@ -93,6 +129,7 @@ void ForwardPass::upload_instances(const Scene& scene) {
                                {10, 3, offsetof(InstanceAttributes, albedo)},
                                {11, 3, offsetof(InstanceAttributes, emission)}});
   }
+  return out;
 }
 
 void ForwardPass::upload_lights(const Scene& scene) {
@@ -165,11 +202,13 @@ void ForwardPass::upload_environment(const Scene& scene) {
   }
 }
 
-void ForwardPass::draw_batches() const {
-  for (const Batch& batch : batches_) {
+void ForwardPass::draw_visible(const glm::mat4& world_to_clip) const {
+  const Visible& seen = visible(world_to_clip);
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const Visible::Batch& batch = seen.batches[m];
     if (batch.instance_count == 0) continue;
     batch.array.bind();
-    glDrawElementsInstanced(GL_TRIANGLES, batch.index_count, GL_UNSIGNED_INT, nullptr, batch.instance_count);
+    glDrawElementsInstanced(GL_TRIANGLES, meshes_[m].index_count, GL_UNSIGNED_INT, nullptr, batch.instance_count);
   }
 }
 
@@ -208,7 +247,7 @@ void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
   opaque_.use();
   opaque_.set("world_to_clip", world_to_clip);
   opaque_.set("eye", camera.view.eye);
-  draw_batches();
+  draw_visible(world_to_clip);
   glDepthMask(GL_TRUE);
 }
 
@@ -226,7 +265,7 @@ void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Progra
   glClearBufferfv(GL_DEPTH, 0, &far_depth);
   program.use();
   program.set("world_to_clip", world_to_clip);
-  draw_batches();
+  draw_visible(world_to_clip);
 }
 
 void ForwardPass::draw_surface_points(const Camera& camera) {

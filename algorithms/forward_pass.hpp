@@ -16,8 +16,9 @@ class ForwardPass {
  public:
   explicit ForwardPass(const Scene&);
 
-  /// Takes over what changed since the last call (transforms, materials, lights, environment).
-  void update(const Scene&);
+  /// Takes over what changed since the last call: transforms, materials, lights, environment, and with `meshes` the
+  /// geometry too.
+  void update(const Scene&, bool meshes);
 
   /// Environment and shaded opaque objects into the bound framebuffer. Unless `keep_depth`, depth is cleared and
   /// written; with it, the depth of an earlier pass over the same geometry is reused and only visible fragments are
@@ -45,20 +46,38 @@ class ForwardPass {
   std::string reload_shaders();
 
  private:
-  struct Batch {
-    gl::Buffer vertices, indices, instances;
-    gl::VertexArray array;
+  struct Vertices {
+    gl::Buffer vertices, indices;
     int index_count = 0;
-    int instance_count = 0;
+    glm::vec3 min{0.0F}, max{0.0F};  // bounds of the mesh
+  };
+  struct InstanceAttributes {
+    glm::mat4 to_world;
+    glm::vec3 normal_to_world[3];
+    glm::vec3 albedo, emission;
+  };
+  // What one camera or light sees of each mesh.
+  struct Visible {
+    struct Batch {
+      gl::Buffer instances;
+      gl::VertexArray array;
+      int instance_count = 0;
+    };
+    glm::mat4 world_to_clip{1.0F};
+    std::vector<Batch> batches;
   };
   void upload_meshes(const Scene&);
-  void upload_instances(const Scene&);
+  void gather_instances(const Scene&);
   void upload_lights(const Scene&);
   void upload_environment(const Scene&);
   void compile();
-  void draw_batches() const;
+  const Visible& visible(const glm::mat4& world_to_clip) const;
+  void draw_visible(const glm::mat4& world_to_clip) const;
 
-  std::vector<Batch> batches_;
+  std::vector<Vertices> meshes_;
+  std::vector<std::string> mesh_names_;
+  std::vector<std::vector<InstanceAttributes>> instances_;  // by mesh
+  mutable std::vector<Visible> visible_;                    // of the last cameras and lights, newest last
   gl::Buffer lights_;
   gl::Texture environment_;
   Environment gradient_;

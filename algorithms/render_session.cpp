@@ -1,5 +1,6 @@
 #include "algorithms/render_session.hpp"
 
+#include <array>
 #include <chrono>
 #include <limits>
 #include <utility>
@@ -35,6 +36,12 @@ Image flipped(const std::vector<float>& texels, int width, int height, int strid
 
 }  // namespace
 
+std::span<const CommonSettings> common_settings() {
+  static const std::array<CommonSettings, 2> all{CommonSettings{"frame", &parameter_table<FrameSettings>()},
+                                                 CommonSettings{"shadow", &parameter_table<ShadowSettings>()}};
+  return all;
+}
+
 struct RenderSession::State {
   Scene scene;
   const TechniqueInfo* info;
@@ -46,7 +53,7 @@ struct RenderSession::State {
   gl::Texture color, depth;
   gl::Framebuffer framebuffer;
   bool prepared = false;
-  std::uint64_t prepared_revision = 0;
+  bool meshes_changed = false;
 
   State(Scene loaded, std::string_view technique_name)
       : scene(std::move(loaded)), info(&find_technique(technique_name)), technique(info->make()), forward(scene) {}
@@ -66,6 +73,11 @@ struct RenderSession::State {
       return {bind_parameters(shadow), "shadow"};
     }
     return {technique->parameters(), std::string(info->name)};
+  }
+
+  void update_forward() {
+    forward.update(scene, meshes_changed);
+    meshes_changed = false;
   }
 
   void fit_target() {
@@ -89,8 +101,12 @@ RenderSession& RenderSession::operator=(RenderSession&&) noexcept = default;
 
 Change RenderSession::assign(std::string_view name, const Value& value) {
   const auto [table, owner] = state_->owner(name);
+  const bool of_scene = table.object == &state_->scene;
   const Change change = table.assign(name, value, owner);
-  if (change == Change::precompute) state_->prepared = false;
+  if (change == Change::precompute) {
+    state_->prepared = false;
+    state_->meshes_changed = state_->meshes_changed || of_scene;
+  }
   // A view may be animated by the scene's parameters.
   state_->camera.view = state_->scene.find_view(state_->camera.view.name);
   return change;
@@ -134,13 +150,12 @@ void RenderSession::resize(int width, int height) {
 
 double RenderSession::prepare() {
   State& s = *state_;
-  s.forward.update(s.scene);
-  if (s.prepared && s.prepared_revision == s.scene.revision()) return 0;
+  s.update_forward();
+  if (s.prepared) return 0;
   const auto start = std::chrono::steady_clock::now();
   s.technique->prepare(s.scene);
   glFinish();
   s.prepared = true;
-  s.prepared_revision = s.scene.revision();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -165,7 +180,7 @@ Image RenderSession::read_color() const {
 
 SurfaceLayer RenderSession::raster_surfaces() {
   State& s = *state_;
-  s.forward.update(s.scene);
+  s.update_forward();
   const int width = s.camera.width, height = s.camera.height;
   const gl::Texture color = gl::Texture::make_2d("surface colour", gl::Format::rgba32f, width, height);
   const gl::Texture distance = gl::Texture::make_2d("surface distance", gl::Format::r32f, width, height);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,14 @@ struct FrameSettings {
   }
 };
 static_assert(well_formed<FrameSettings>());
+
+/// A group of settings that all techniques share.
+struct CommonSettings {
+  std::string_view prefix;  ///< "frame", without the dot
+  const ParameterTable* table;
+};
+/// `frame` and `shadow`.
+std::span<const CommonSettings> common_settings();
 
 /// A scene, a technique and a target of one size: what the command line, the sweep worker and the viewer render with.
 /// Needs a current GL context.

@@ -30,8 +30,9 @@ class Technique {
  public:
   virtual ~Technique() = default;
   virtual ParameterRef parameters() = 0;
-  /// Precomputation, timed and reported apart. Called once before the first frame, and again when the scene's revision
-  /// or a Change::precompute parameter changed. Throws InputError when the scene lacks what the technique needs.
+  /// Precomputation, timed and reported apart. Called once before the first frame, and again when a
+  /// Change::precompute parameter, its own or the scene's, changed. Throws InputError when the scene lacks what the
+  /// technique needs.
   virtual void prepare(const Scene&) = 0;
   /// Draws one frame over what it clears itself; opaque objects come from `forward`. Passes are timed by name.
   virtual void render(const Scene&, const Camera&, ForwardPass& forward, const Target&, gl::PassTimer&) = 0;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/render_session.hpp"
 #include "algorithms/scene/hash.hpp"
 #include "sweeps/constraint.hpp"
 #include "sweeps/provenance.hpp"
@@ -53,14 +54,16 @@ std::string hash_of(const Point& point) {
 std::vector<ParameterInfo> full_table(const Catalogue& catalogue, const std::string& technique,
                                       const std::string& scene) {
   std::vector<ParameterInfo> infos = catalogue.technique_parameters(technique);
-  const auto add = [&](std::vector<ParameterInfo> more, const char* prefix) {
+  const auto add = [&](std::vector<ParameterInfo> more, const std::string& prefix) {
     for (ParameterInfo& info : more) {
       info.name = prefix + info.name;
       infos.push_back(std::move(info));
     }
   };
   add(catalogue.scene(scene).parameters, "scene.");
-  add(frame_parameters(), "frame.");
+  for (const CommonSettings& group : common_settings()) {
+    add({group.table->infos().begin(), group.table->infos().end()}, std::string(group.prefix) + ".");
+  }
   return infos;
 }
 

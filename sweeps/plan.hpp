@@ -16,7 +16,7 @@ struct Point {
   std::string id;  ///< 16 hex digits; the same for the same measurement in any block and any spec
   std::string technique, scene, view;
   Size size;
-  std::map<std::string, Value> parameters;  ///< the technique's, `scene.…` and `frame.…`, every one
+  std::map<std::string, Value> parameters;  ///< the technique's, `scene.…`, `frame.…` and `shadow.…`, every one
   std::vector<std::string> assigned;        ///< those that the spec gives, in order: axes, then fixed
   std::vector<std::string> metrics;
   TimingLimits timing;

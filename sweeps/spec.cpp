@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "algorithms/render_session.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
 #include "sweeps/metrics/metrics.hpp"
@@ -76,8 +77,11 @@ struct Owners {
     if (name.starts_with("scene.")) {
       for (const std::string& scene : block.scenes)
         owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
-    } else if (name.starts_with("frame.")) {
-      owners.push_back({"frame", frame_parameters()});
+    } else if (const auto common = std::find_if(
+                   common_settings().begin(), common_settings().end(),
+                   [&](const CommonSettings& group) { return name.starts_with(std::string(group.prefix) + "."); });
+               common != common_settings().end()) {
+      owners.push_back({std::string(common->prefix), {common->table->infos().begin(), common->table->infos().end()}});
     } else {
       for (const std::string& technique : block.techniques) {
         owners.push_back({technique, catalogue.technique_parameters(technique)});

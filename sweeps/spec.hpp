@@ -18,7 +18,7 @@ struct Position {
   unsigned column = 0;
 };
 
-/// One swept parameter: a technique's, `scene.…` or `frame.…`, with values of the parameter's own type.
+/// One swept parameter: a technique's, `scene.…`, `frame.…` or `shadow.…`, with values of the parameter's own type.
 struct Axis {
   std::string name;
   std::vector<Value> values;

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/render_session.hpp"
 #include "algorithms/scene/image.hpp"
 #include "gl/error.hpp"
 
@@ -50,11 +49,6 @@ std::vector<std::pair<const toml::key*, const toml::node*>> in_file_order(const 
 }
 
 }  // namespace
-
-std::vector<ParameterInfo> frame_parameters() {
-  const auto infos = parameter_table<FrameSettings>().infos();
-  return {infos.begin(), infos.end()};
-}
 
 void SpecReader::fail(Position at, std::string_view message) const {
   throw InputError(fmt::format("{}:{}:{}: {}", source_, at.line, at.column, message));

@@ -15,9 +15,6 @@
 /// Typed reading of a spec's TOML, for spec.cpp alone: every complaint is an InputError that starts with the place.
 namespace pellucid::sweeps {
 
-/// The parameters of the frame itself, without the prefix `frame.`.
-std::vector<ParameterInfo> frame_parameters();
-
 class SpecReader {
  public:
   explicit SpecReader(std::string source) : source_(std::move(source)) {}

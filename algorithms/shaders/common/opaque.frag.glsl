@@ -20,9 +20,12 @@ layout(location = 1) out float eye_distance_m;
 #endif
 
 void main() {
+  // Two-sided: the triangle's own normal tells which side is seen; at a smooth silhouette the interpolated one may not.
   vec3 n = normalize(world_normal);
   vec3 to_eye = eye - world_position;
-  if (dot(n, to_eye) < 0.0) n = -n;
+  vec3 geometric = cross(dFdx(world_position), dFdy(world_position));
+  if (dot(geometric, to_eye) < 0.0) geometric = -geometric;
+  if (dot(n, geometric) < 0.0) n = -n;
   eye_distance_m = length(to_eye);
 #ifdef SURFACE_POINTS
   point_albedo = vec4(albedo, 1.0);
