@@ -13,7 +13,6 @@ namespace pellucid::sweeps {
 
 Database::Database(const std::filesystem::path& path, Mode mode) : path_(path) {
   std::error_code error;
-  const bool exists = std::filesystem::exists(path, error);
   if (std::filesystem::is_directory(path, error)) {
     throw InputError(fmt::format("store '{}' is a folder", path.string()));
   }
@@ -21,17 +20,29 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path) {
     open(path.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     return;
   }
-  if (!exists) throw InputError(fmt::format("store '{}' does not exist", path.string()));
+  if (!std::filesystem::exists(path, error)) {
+    throw InputError(fmt::format("store '{}' does not exist", path.string()));
+  }
+  try {
+    open_for_reading();
+  } catch (...) {  // no destructor runs for what is not yet constructed
+    sqlite3_close(handle_);
+    throw;
+  }
+}
+
+void Database::open_for_reading() {
   // Able to write where it may, so that the last to close tidies the log away; the rows are safe from it.
-  open(path.string(), SQLITE_OPEN_READWRITE);
+  open(path_.string(), SQLITE_OPEN_READWRITE);
   sqlite3_exec(handle_, "PRAGMA query_only = 1", nullptr, nullptr, nullptr);
   // A WAL database in a folder that cannot be written gets no shared memory; without a log there is nothing to share.
   const int code = sqlite3_exec(handle_, "SELECT count(*) FROM sqlite_master", nullptr, nullptr, nullptr);
   if (code == SQLITE_OK) return;
   const bool unwritable = code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
-  if (!unwritable || std::filesystem::exists(path.string() + "-wal", error)) fail(code);
+  std::error_code error;
+  if (!unwritable || std::filesystem::exists(path_.string() + "-wal", error)) fail(code);
   std::string uri = "file:";
-  for (const char c : std::filesystem::absolute(path).string()) {
+  for (const char c : std::filesystem::absolute(path_).string()) {
     uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", static_cast<unsigned>(c)) : std::string(1, c);
   }
   sqlite3_close(std::exchange(handle_, nullptr));

@@ -34,6 +34,7 @@ class Database {
 
  private:
   void open(const std::string& uri, int flags);
+  void open_for_reading();
   std::filesystem::path path_;
   sqlite3* handle_ = nullptr;
 };
