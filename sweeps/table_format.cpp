@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+#include <cctype>
 #include <map>
 #include <string>
 
@@ -26,9 +26,15 @@ std::string padded(const std::string& text, std::size_t width, bool right) {
 }
 
 std::string escape_markdown(std::string_view text) {
+  const auto in_word = [&](std::size_t i) {
+    return i > 0 && i + 1 < text.size() && std::isalnum(static_cast<unsigned char>(text[i - 1])) != 0 &&
+           std::isalnum(static_cast<unsigned char>(text[i + 1])) != 0;
+  };
   std::string out;
-  for (const char c : text) {
-    if (std::string_view("\\|*_`<>[]").find(c) != std::string_view::npos) out += '\\';
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool special = std::string_view("\\|*_`<>[]").find(c) != std::string_view::npos;
+    if (special && !(c == '_' && in_word(i))) out += '\\';
     out += c == '\n' || c == '\r' ? ' ' : c;
   }
   return out;
