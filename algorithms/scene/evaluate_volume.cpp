@@ -98,35 +98,48 @@ void evaluate_transfer(const SceneDescription& description, Volume& volume) {
   }
 }
 
+
+std::vector<float> make_density(const VolumeDescription& from, const glm::ivec3& size) {
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const auto seed = static_cast<std::uint32_t>(from.seed);
+  const int octaves = whole(from.octaves);
+  switch (from.kind) {
+    case VolumeKind::constant:
+    case VolumeKind::file:
+      break;
+    case VolumeKind::ball:
+      return make_ball_density(size);
+    case VolumeKind::fog:
+      return make_fog_density(size, {seed, octaves, f(from.frequency), f(from.height_falloff), f(from.contrast)});
+    case VolumeKind::smoke:
+      return make_smoke_density(size, {seed, octaves, f(from.frequency), f(from.contrast), f(from.swirl)});
+    case VolumeKind::water:
+      return make_water_density(size, {seed, octaves, f(from.frequency), f(from.contrast), f(from.depth_gradient),
+                                       f(from.level), f(from.wave)});
+  }
+  return make_constant_density(size, 1.0F);
+}
+
 }  // namespace
 
-void evaluate_voxels(const SceneDescription& description, Scene& scene) {
-  const VolumeDescription& from = *description.volume;
+void evaluate_voxels(SceneDescription& description, Scene& scene) {
+  VolumeDescription& from = *description.volume;
   const double count = from.voxels.x * from.voxels.y * from.voxels.z;
-  constexpr double kMaxVoxels = 1 << 30;
-  if (count > kMaxVoxels) {
+  if (count > static_cast<double>(kMaxVoxels)) {
     throw description.file.error(from.place, fmt::format("volume: {} x {} x {} voxels; at most 2^30 are allowed",
                                                          from.voxels.x, from.voxels.y, from.voxels.z));
   }
   Volume& volume = *scene.volume;
   volume.name = from.name;
   volume.size = glm::ivec3(whole(from.voxels.x), whole(from.voxels.y), whole(from.voxels.z));
-  const auto density = static_cast<float>(from.density);
-  if (from.kind == VolumeKind::constant) {
-    volume.density = make_constant_density(volume.size, density);
+  volume.file_range = glm::vec2(from.file_range);
+  if (from.kind == VolumeKind::file) {
+    if (from.from_file) volume.density = std::move(from.from_file->values);
+    from.from_file.reset();
     return;
   }
-  if (from.kind == VolumeKind::ball) {
-    volume.density = make_ball_density(volume.size);
-  } else {
-    FogOptions options;
-    options.seed = static_cast<std::uint32_t>(from.seed);
-    options.octaves = whole(from.octaves);
-    options.frequency = static_cast<float>(from.frequency);
-    options.height_falloff = static_cast<float>(from.height_falloff);
-    options.contrast = static_cast<float>(from.contrast);
-    volume.density = make_fog_density(volume.size, options);
-  }
+  volume.density = make_density(from, volume.size);
+  const auto density = static_cast<float>(from.density);
   if (density == 1.0F) return;
   for (float& d : volume.density)
     d *= density;

@@ -29,7 +29,7 @@ void parse_scene(std::string_view text, const std::filesystem::path& folder, Sce
   parse_instances(root, scene);
   parse_forest(root, scene);
   parse_lights(root, scene);
-  parse_volume(root, scene);
+  parse_volume(root, folder, scene);
   parse_environment(root, folder, scene);
   parse_views(root, scene);
   parse_parameters(root, scene);

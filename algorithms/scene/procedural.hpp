@@ -52,6 +52,28 @@ std::vector<float> make_fog_density(const glm::ivec3& size, const FogOptions&);
 /// 1a).
 std::vector<float> make_ball_density(const glm::ivec3& size);
 
+/// A plume that rises from the middle of the bottom, widens, winds and thins out; nothing at the box's faces.
+struct SmokeOptions {
+  std::uint32_t seed = 1;
+  int octaves = 4;
+  float frequency = 4.0F;  ///< noise periods across the box
+  float contrast = 0.8F;   ///< 0: an even plume, 1: wisps with nothing between them
+  float swirl = 0.5F;      ///< how far it winds off its axis at the top, as a share of the box's width
+};
+std::vector<float> make_smoke_density(const glm::ivec3& size, const SmokeOptions&);
+
+/// Water up to a wavy surface, denser with depth and a little uneven; nothing above it.
+struct WaterOptions {
+  std::uint32_t seed = 1;
+  int octaves = 2;
+  float frequency = 2.0F;       ///< noise periods across the box
+  float contrast = 0.2F;        ///< of that noise, 0 to 1
+  float depth_gradient = 0.3F;  ///< density grows from 1 − gradient at the level to 1 at the bottom
+  float level = 0.9F;           ///< mean height of the surface, a share of the box's
+  float wave = 0.01F;           ///< its waves' amplitude, likewise
+};
+std::vector<float> make_water_density(const glm::ivec3& size, const WaterOptions&);
+
 /// A spot's cone of light in a box around it: local z along the light from `near_m` to `range_m` from it, x and y
 /// across the cone's widest section, its axis in the middle.
 struct ConeShape {

@@ -28,7 +28,8 @@ struct Mesh {
   std::vector<glm::uvec3> triangles;
 };
 
-/// Lambertian: radiance = albedo · (ambient + Σ E cos θ / π), the normal turned towards the viewer (two-sided).
+/// Lambertian: radiance = albedo · (ambient + Σ E cos θ / π), the normal turned to the side of the
+/// triangle that the viewer sees (two-sided).
 struct Material {
   std::string name;
   glm::vec3 albedo{0.5F};
@@ -72,7 +73,8 @@ struct TransferPoint {
 struct Volume {
   std::string name;
   glm::ivec3 size{1};
-  std::vector<float> density;  ///< x fastest; ≥ 0, finite
+  std::vector<float> density;        ///< x fastest; ≥ 0, finite
+  glm::vec2 file_range{0.0F, 1.0F};  ///< of a volume from a file: the values in it that became density 0 and 1
   glm::mat4 to_world{1.0F};
   float extinction = 1.0F;              ///< φ [1/m] at density 1
   glm::vec3 albedo{1.0F};               ///< single-scattering albedo

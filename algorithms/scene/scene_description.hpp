@@ -12,6 +12,7 @@
 #include "algorithms/scene/motion.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/toml_reader.hpp"
+#include "algorithms/scene/volume_file.hpp"
 
 /// What a scene file says, before it is evaluated at a time and at values of the scene's parameters. Numbers are
 /// doubles, integers too, and keep their addresses: parameters write them (DriveTarget).
@@ -89,7 +90,7 @@ struct TransferDescription {
   glm::dvec3 albedo{1.0};
 };
 
-enum class VolumeKind { constant, fog, ball };
+enum class VolumeKind { constant, fog, ball, smoke, water, file };
 struct VolumeDescription {
   std::string name;
   Place place;
@@ -104,7 +105,10 @@ struct VolumeDescription {
   std::deque<TransferDescription> transfer;
   int light = -1;  ///< in whose space the box lies: it encloses the cone between `near_m` and `range_m`
   double near_m = 0.05, range_m = 1;
-  double seed = 1, octaves = 4, frequency = 3, height_falloff = 3, contrast = 0.7;
+  double seed = 1, octaves = 4, frequency = 3, height_falloff = 3, contrast = 0.7, swirl = 0.5;
+  double depth_gradient = 0.3, level = 0.9, wave = 0.01;
+  std::optional<VolumeFile> from_file;  ///< normalised; its values are moved into the scene when it is evaluated
+  glm::dvec2 file_range{0.0, 1.0};
 };
 
 struct EnvironmentDescription {
@@ -154,7 +158,7 @@ void parse_meshes(TableReader& root, const std::filesystem::path& folder, SceneD
 void parse_instances(TableReader& root, SceneDescription&);
 void parse_forest(TableReader& root, SceneDescription&);
 void parse_lights(TableReader& root, SceneDescription&);
-void parse_volume(TableReader& root, SceneDescription&);
+void parse_volume(TableReader& root, const std::filesystem::path& folder, SceneDescription&);
 void parse_environment(TableReader& root, const std::filesystem::path& folder, SceneDescription&);
 void parse_views(TableReader& root, SceneDescription&);
 void parse_parameters(TableReader& root, SceneDescription&);
@@ -194,7 +198,7 @@ int find_named(TableReader& reader, std::string_view key, const Things& things, 
 /// Evaluates one part at a time of the scene. Throws InputError at the part's place when its numbers contradict each
 /// other (near_m ≥ far_m).
 void evaluate(SceneDescription&, Affected, double time_s, Scene&);
-void evaluate_voxels(const SceneDescription&, Scene&);
+void evaluate_voxels(SceneDescription&, Scene&);
 /// The scattering at the voxels of a volume in a light's space; its box is left alone.
 void evaluate_scattering(const SceneDescription&, Scene&);
 void evaluate_medium(const SceneDescription&, double time_s, Scene&);
