@@ -43,7 +43,7 @@ std::string escape_markdown(std::string_view text) {
 std::string markdown(const Table& table) {
   std::vector<std::vector<std::string>> lines;
   for (const TableRow& row : table.rows) {
-    if (row.in == TableRow::In::csv) continue;
+    if ((row.in & TableRow::markdown) == 0) continue;
     std::vector<std::string>& line = lines.emplace_back();
     line.push_back(escape_markdown(row.label));
     for (const TableCell& cell : row.cells)
@@ -76,7 +76,7 @@ std::string markdown(const Table& table) {
 std::string csv(const Table& table) {
   std::string out;
   for (const TableRow& row : table.rows) {
-    if (row.in == TableRow::In::print) continue;
+    if ((row.in & TableRow::csv) == 0) continue;
     std::vector<std::string> fields{row.label};
     for (const TableCell& cell : row.cells)
       fields.push_back(cell.value ? fmt::format("{}", *cell.value) : cell.text);
@@ -165,14 +165,15 @@ std::string latex(const Table& table) {
   const std::size_t count = table.rows.front().cells.size();
   std::string out = fmt::format(
       "% {} of Pellucid; needs \\usepackage{{booktabs}}\n"
-      "\\begin{{table}}\n  \\centering\n  \\caption{{{} ({}).}}\n  \\label{{tab:{}}}\n  \\begin{{tabular}}{{l{}}}\n"
+      "\\begin{{table}}\n  \\centering\n  \\caption{{{} ({}).}}\n  \\label{{tab:{}}}\n  "
+      "\\small\\setlength{{\\tabcolsep}}{{3pt}}\n  \\begin{{tabular}}{{l{}}}\n"
       "    \\toprule\n",
       table.info.name, escape_latex(table.info.title), escape_latex(table.info.source), table.info.name,
       std::string(count, 'r'));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const TableRow& row = table.rows[i];
     if (i == table.heading_rows) out += "    \\midrule\n";
-    if (row.in == TableRow::In::csv) continue;
+    if ((row.in & TableRow::latex) == 0) continue;
     // After a line's end, a bracket or a star would be read as an argument of it.
     const bool argument = row.label.starts_with('[') || row.label.starts_with('*');
     out += fmt::format("    {}{}", argument ? "{}" : "", escape_latex(row.label));

@@ -32,7 +32,7 @@ struct Place {
 /// One row of ours: `value` where the point was measured, "failed" where it failed.
 template <class F>
 TableRow our_row(std::string label, const std::vector<Place>& places, int digits, F value,
-                 TableRow::In in = TableRow::In::all) {
+                 unsigned in = TableRow::all) {
   TableRow row{std::move(label), {}, in};
   for (const Place& place : places) {
     TableCell cell;
@@ -49,7 +49,7 @@ TableRow our_row(std::string label, const std::vector<Place>& places, int digits
 
 template <class F>
 TableRow paper_row(std::string label, int decimals, F value) {
-  TableRow row{std::move(label), {}, TableRow::In::all};
+  TableRow row{std::move(label), {}, TableRow::all};
   for (const Published& paper : kTable1) {
     const double number = value(paper);
     row.cells.push_back({fmt::format("{:.{}f}", number, decimals), number, false});
@@ -66,11 +66,11 @@ std::optional<double> fps_bound(const json& row, const char* frame_ms) {
 std::vector<TableRow> interval_rows(const std::vector<Place>& places) {
   const auto low = [](const json& row) { return fps_bound(row, "frame_ms_ci95_high"); };
   const auto high = [](const json& row) { return fps_bound(row, "frame_ms_ci95_low"); };
-  TableRow both = our_row("95 % interval", places, 4, low, TableRow::In::print);
-  const TableRow upper = our_row("95 % interval, high", places, 4, high, TableRow::In::csv);
+  TableRow both = our_row("95 % interval", places, 4, low, TableRow::markdown);
+  const TableRow upper = our_row("95 % interval, high", places, 4, high, TableRow::latex | TableRow::csv);
   TableRow lower = both;
   lower.label = "95 % interval, low";
-  lower.in = TableRow::In::csv;
+  lower.in = upper.in;
   for (std::size_t i = 0; i < both.cells.size(); ++i) {
     if (both.cells[i].value && upper.cells[i].value) both.cells[i].text += "–" + upper.cells[i].text;
     both.cells[i].value.reset();
@@ -89,7 +89,7 @@ std::optional<double> relative_fps(const std::vector<Place>& places, std::size_t
 }
 
 TableRow our_relative_row(const std::string& label, const std::vector<Place>& places) {
-  TableRow row{label, {}, TableRow::In::all};
+  TableRow row{label, {}, TableRow::all};
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto value = relative_fps(places, i);
     row.cells.push_back({value                           ? fmt::format("{:.2f}", *value)
@@ -197,7 +197,7 @@ Table sampling_hulls_table1(const TableInfo& info, const ChosenRows& chosen) {
   table.rows.push_back(our_relative_row(relative + "(ours)", places));
   table.rows.push_back(our_row("FLIP", places, 3, [](const json& row) { return number(row, "flip_mean"); }));
   table.rows.push_back(our_row("RMSE", places, 3, [](const json& row) { return number(row, "rmse"); }));
-  TableRow outcomes{"outcome", {}, TableRow::In::csv};
+  TableRow outcomes{"outcome", {}, TableRow::csv};
   for (std::size_t i = 0; i < places.size(); ++i) {
     outcomes.cells.push_back({places[i].outcome, std::nullopt, false});
     table.records.push_back(record(chosen.sweep, places, i));

@@ -35,10 +35,11 @@ struct TableCell {
 };
 
 struct TableRow {
-  enum class In { all, print, csv };  ///< print: Markdown and LaTeX
+  /// Where it stands: what is one row for the eye may be two for a narrow page or a program.
+  enum In : unsigned { markdown = 1, latex = 2, csv = 4, all = 7 };
   std::string label;
   std::vector<TableCell> cells;  ///< one for each column of the published table
-  In in = In::all;
+  unsigned in = all;             ///< an or of In
 };
 
 /// One measurement of a table for JSON, in the order of its fields: `paper` (published value or nothing) and `ours`

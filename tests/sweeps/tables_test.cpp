@@ -100,6 +100,9 @@ TEST(Tables, OursComeFromTheStoresRows) {
   EXPECT_EQ(texts(table, "fps (ours)"), (Words{"100.0", "125.0", "200.0", "166.7", "142.9", "50.00"}));
   // The interval's ends change places: the longest frame is the lowest rate.
   EXPECT_EQ(texts(table, "95 % interval")[2], "181.8–222.2");
+  EXPECT_DOUBLE_EQ(row_of(table, "95 % interval, low").cells[2].value.value(), 1000 / 5.5);
+  EXPECT_DOUBLE_EQ(row_of(table, "95 % interval, high").cells[2].value.value(), 1000 / 4.5);
+  EXPECT_EQ(format_table(table, TableFormat::markdown).find("interval, low"), std::string::npos);
   EXPECT_EQ(texts(table, "fps relative to 4 × 8 (ours)"), (Words{"0.50", "0.62", "1.00", "0.83", "0.71", "0.25"}));
   EXPECT_EQ(texts(table, "FLIP"), Words(6, "0.0125"));
   EXPECT_EQ(texts(table, "RMSE"), Words(6, "0.00123"));
