@@ -129,7 +129,7 @@ std::string store_option(const PaperOutcome& outcome, const std::string& spec) {
 ReportTable table_block(const PaperOutcome& outcome, const TableOutcome& made) {
   ReportTable out{.caption = made.table.info.title, .rows = {}};
   for (const sweeps::TableRow& row : made.table.rows) {
-    if (row.in == sweeps::TableRow::In::csv) continue;
+    if ((row.in & sweeps::TableRow::markdown) == 0) continue;
     std::vector<std::string> cells{row.label};
     for (const sweeps::TableCell& cell : row.cells)
       cells.push_back(cell.text);
