@@ -14,7 +14,7 @@ namespace pellucid::sweeps {
 namespace {
 
 /// Raise it when the tracer or the medium's model changes, so that files of the old one are not used.
-constexpr int kReferenceVersion = 1;
+constexpr int kReferenceVersion = 2;
 constexpr std::size_t kMemoryBytes = std::size_t{256} << 20;
 /// The reference, its mask and what FLIP keeps of it.
 constexpr std::size_t kBytesPerPixel = 128;

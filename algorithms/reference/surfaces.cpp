@@ -36,7 +36,11 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& or
   point.position = origin + hit.distance * direction;
   const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(glm::dmat3(instance.to_world)));
   point.normal = glm::normalize(normal_to_world * interpolate(mesh.normals, hit));
-  if (glm::dot(point.normal, direction) > 0.0) point.normal = -point.normal;
+  // Two-sided: the triangle's own normal tells which side is seen; at a smooth silhouette the interpolated one may not.
+  const auto corner = [&](glm::length_t i) { return glm::dvec3(mesh.positions[hit.triangle[i]]); };
+  glm::dvec3 geometric = normal_to_world * glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+  if (glm::dot(geometric, direction) > 0.0) geometric = -geometric;
+  if (glm::dot(point.normal, geometric) < 0.0) point.normal = -point.normal;
   point.albedo = glm::dvec3(material.albedo) * glm::dvec3(instance.tint);
   if (!mesh.colors.empty()) point.albedo *= interpolate(mesh.colors, hit);
   point.emission = glm::dvec3(material.emission);
