@@ -47,7 +47,7 @@ std::string markdown(const Table& table) {
     std::vector<std::string>& line = lines.emplace_back();
     line.push_back(escape_markdown(row.label));
     for (const TableCell& cell : row.cells)
-      line.push_back(escape_markdown(cell.text) + (cell.unconverged ? "†" : ""));
+      line.push_back(escape_markdown(cell.text));
   }
   std::vector<std::size_t> widths(lines.front().size(), 3);
   for (const auto& line : lines) {
@@ -178,7 +178,7 @@ std::string latex(const Table& table) {
     const bool argument = row.label.starts_with('[') || row.label.starts_with('*');
     out += fmt::format("    {}{}", argument ? "{}" : "", escape_latex(row.label));
     for (const TableCell& cell : row.cells)
-      out += fmt::format(" & {}{}", escape_latex(cell.text), cell.unconverged ? escape_latex("†") : "");
+      out += fmt::format(" & {}", escape_latex(cell.text));
     out += " \\\\\n";
   }
   out += "    \\bottomrule\n  \\end{tabular}\n";

@@ -217,6 +217,12 @@ std::vector<std::string> provenance_notes(const TableInfo& info, const ChosenRow
                                                               : fmt::format("{} to {}", frames->first, frames->second);
     notes.push_back(fmt::format("Intervals are 95 % bootstrap intervals of the median, of {} frames a point.", count));
   }
+  const auto worst = extent(rows, "reference_step_error_max");
+  const auto mean = extent(rows, "reference_step_error_mean");
+  if (worst && mean) {
+    notes.push_back(fmt::format("The reference's own step error is at most {}, {} in the mean.",
+                                significant(worst->second, 2), significant(mean->second, 2)));
+  }
   if (const auto drift = extent(rows, "baseline_drift")) {
     notes.push_back(
         fmt::format("The baseline's frame time changed by {:+.1f} % to {:+.1f} % in the course of the sweep.",

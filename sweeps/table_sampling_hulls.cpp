@@ -52,7 +52,7 @@ TableRow paper_row(std::string label, int decimals, F value) {
   TableRow row{std::move(label), {}, TableRow::all};
   for (const Published& paper : kTable1) {
     const double number = value(paper);
-    row.cells.push_back({fmt::format("{:.{}f}", number, decimals), number, false});
+    row.cells.push_back({fmt::format("{:.{}f}", number, decimals), number});
   }
   return row;
 }
@@ -92,10 +92,7 @@ TableRow our_relative_row(const std::string& label, const std::vector<Place>& pl
   TableRow row{label, {}, TableRow::all};
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto value = relative_fps(places, i);
-    row.cells.push_back({value                           ? fmt::format("{:.2f}", *value)
-                         : places[i].outcome == "failed" ? "failed"
-                                                         : "",
-                         value, false});
+    row.cells.push_back({value ? fmt::format("{:.2f}", *value) : places[i].outcome == "failed" ? "failed" : "", value});
   }
   return row;
 }
@@ -186,8 +183,9 @@ Table sampling_hulls_table1(const TableInfo& info, const ChosenRows& chosen) {
   table.rows.push_back(paper_row("Number of samples", 0, [](const Published& p) { return double(p.samples); }));
   table.rows.push_back(paper_row("fps (paper)", 0, [](const Published& p) { return p.fps; }));
   TableRow fps = our_row("fps (ours)", places, 4, [](const json& row) { return number(row, "fps"); });
-  for (std::size_t i = 0; i < places.size(); ++i)
-    fps.cells[i].unconverged = places[i].outcome == "unconverged";
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].outcome == "unconverged") fps.cells[i].text += "†";
+  }
   table.rows.push_back(std::move(fps));
   for (TableRow& row : interval_rows(places))
     table.rows.push_back(std::move(row));
@@ -199,7 +197,7 @@ Table sampling_hulls_table1(const TableInfo& info, const ChosenRows& chosen) {
   table.rows.push_back(our_row("RMSE", places, 3, [](const json& row) { return number(row, "rmse"); }));
   TableRow outcomes{"outcome", {}, TableRow::csv};
   for (std::size_t i = 0; i < places.size(); ++i) {
-    outcomes.cells.push_back({places[i].outcome, std::nullopt, false});
+    outcomes.cells.push_back({places[i].outcome, std::nullopt});
     table.records.push_back(record(chosen.sweep, places, i));
   }
   table.rows.push_back(std::move(outcomes));

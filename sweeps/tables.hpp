@@ -27,11 +27,11 @@ std::vector<TableInfo> tables();
 /// Throws InputError with the nearest name when there is no such table.
 TableInfo find_table(std::string_view name);
 
-/// One place of a table. `value` is what a program should read, `text` what is set for people.
+/// One place of a table. `value` is what a program should read, `text` what is set for people: rounded, and with a
+/// dagger where the frame time did not converge.
 struct TableCell {
   std::string text;             ///< empty when there is nothing to say
   std::optional<double> value;  ///< of a number
-  bool unconverged = false;     ///< marked in print; CSV and JSON have a field for it
 };
 
 struct TableRow {
