@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   sandbox::add_compare(root, commands);
   sandbox::add_sweep(root, commands);
   sandbox::add_results(root, commands);
+  sandbox::add_bench(root, commands);
   sandbox::add_plot(root, commands);
   sandbox::add_reproduce(root, commands);
 

@@ -14,8 +14,9 @@ using nlohmann::json;
 
 const std::vector<std::vector<std::string>>& subcommands() {
   static const std::vector<std::vector<std::string>> all{
-      {"list"},         {"devices"},         {"describe"}, {"render"}, {"reference"}, {"compare"},
-      {"sweep", "run"}, {"sweep", "status"}, {"results"},  {"table"},  {"plot"},      {"reproduce"}};
+      {"list"},    {"devices"},      {"describe"},        {"render"},  {"reference"},
+      {"compare"}, {"sweep", "run"}, {"sweep", "status"}, {"results"}, {"table"},
+      {"bench"},   {"plot"},         {"reproduce"}};
   return all;
 }
 

@@ -1,0 +1,136 @@
+// pellucid bench.
+#include "sweeps/bench.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/technique.hpp"
+#include "gl/context.hpp"
+#include "gl/error.hpp"
+#include "sandbox/commands/arguments.hpp"
+#include "sandbox/commands/commands.hpp"
+#include "sweeps/provenance.hpp"
+
+namespace pellucid::sandbox {
+namespace {
+
+using nlohmann::ordered_json;
+using sweeps::BenchRatio;
+using sweeps::BenchResult;
+using sweeps::TimingSummary;
+
+struct Options {
+  std::string technique, scene = "fog_forest", view, size = "720x540";
+  std::vector<std::string> settings;
+  int frames = sweeps::BenchRequest{}.frames;
+  std::optional<int> device;
+  bool json = false;
+};
+
+ordered_json time_json(const TimingSummary& t) {
+  return {
+      {"frame_ms_median", t.median_ms}, {"frame_ms_ci95_low", t.ci95_ms.low}, {"frame_ms_ci95_high", t.ci95_ms.high}};
+}
+
+ordered_json ratio_json(const std::optional<BenchRatio>& ratio) {
+  if (!ratio) return nullptr;
+  return {{"median", ratio->median}, {"ci95_low", ratio->ci95.low}, {"ci95_high", ratio->ci95.high}};
+}
+
+void print_time(const char* what, const TimingSummary& t) {
+  fmt::print("  {:<34} {:9.3f} ms  [{:.3f}, {:.3f}]\n", what, t.median_ms, t.ci95_ms.low, t.ci95_ms.high);
+}
+
+void print_ratio(const char* what, const std::optional<BenchRatio>& ratio) {
+  if (ratio) {
+    fmt::print("  {:<34} {:9.3f}     [{:.3f}, {:.3f}]\n", what, ratio->median, ratio->ci95.low, ratio->ci95.high);
+  } else {
+    fmt::print("  {:<34} {:>9}     the hulls take no time that stands out of the noise\n", what, "-");
+  }
+}
+
+int bench(const Options& options) {
+  const Size size = parse_size(options.size);
+  if (const auto& info = find_technique(options.technique); info.name != "sampling_hulls") {
+    throw InputError(fmt::format("bench: there is no bare shader of {}, only of sampling_hulls", info.name));
+  }
+  sweeps::BenchRequest request{options.scene, options.view, size.width, size.height, {}, options.frames};
+  for (const std::string& setting : options.settings)
+    request.settings.push_back(parse_assignment(setting));
+  const gl::Context context({.device = options.device});
+  nlohmann::json recipe;
+  const BenchResult result = sweeps::bench_sampling_hulls(request, recipe);
+
+  if (options.json) {
+    ordered_json out = recipe;
+    out["frames"] = result.frames;
+    out["block_frames"] = BenchResult::kBlockFrames;
+    out["method"] = time_json(result.method);
+    out["bare"] = time_json(result.bare);
+    out["opaque"] = time_json(result.opaque);
+    out["ratio"] = ratio_json(result.ratio);
+    out["ratio_without_opaque"] = ratio_json(result.own);
+    out["blends_per_pixel"] = result.blends_per_pixel;
+    out["fetches_per_blend"] = result.fetches_per_blend;
+    out["fetches_per_pixel"] = result.fetches_per_pixel;
+    out["device"] = context.device().renderer;
+    out["driver"] = context.device().version;
+    out["clock"] = result.clock;
+    out["commit"] = sweeps::kCommit;
+    out["dirty"] = sweeps::kDirty;
+    out["started_utc"] = sweeps::utc_text(sweeps::unix_now_s());
+    out["argv"] = process_arguments();
+    fmt::print("{}\n", out.dump(2));
+    return kDone;
+  }
+  const nlohmann::json& parameters = recipe.at("parameters");
+  fmt::print("{} of {}, view {}, {} hulls of {} samples, {}x{}; medians of {} frames [95 % interval]\n",
+             options.technique, options.scene, recipe.at("view").get<std::string>(), parameters.at("hulls").get<int>(),
+             parameters.at("samples").get<int>(), size.width, size.height, result.frames);
+  print_time("frame", result.method);
+  print_time("bare shader's frame", result.bare);
+  print_time("opaque passes of both, alone", result.opaque);
+  print_ratio("frame / bare", result.ratio);
+  print_ratio("the same without opaque passes", result.own);
+  fmt::print("  {:<34} {:9.3f}\n", "blends per pixel", result.blends_per_pixel);
+  fmt::print("  {:<34} {:9.3f}     {} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
+             result.fetches_per_blend);
+  fmt::print("  on {}, clock {}\n", context.device().renderer, result.clock);
+  return kDone;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& root, std::vector<Command>& commands) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand(
+      "bench", "Time a technique's frame against a bare shader with the same texture fetches and blends");
+  app->add_option("technique", options->technique, "The technique; sampling_hulls has a bare shader")->required();
+  app->add_option("--scene", options->scene, "A scene's name (pellucid list scenes) or a .toml file")
+      ->capture_default_str();
+  app->add_option("-s,--set", options->settings,
+                  "name=value of a parameter, scene.name for the scene's own; repeatable")
+      ->allow_extra_args(false);
+  app->add_option("--view", options->view, "A named view; the first without it");
+  app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  app->add_option("--frames", options->frames,
+                  fmt::format("Frames timed of each, rounded up to whole blocks of {}", BenchResult::kBlockFrames))
+      ->check(CLI::Range(2 * BenchResult::kBlockFrames, 100000))
+      ->capture_default_str();
+  app->add_option("--device", options->device, "EGL device (pellucid devices)");
+  app->add_flag("--json", options->json, "Print the measurement as JSON");
+  app->footer(
+      "Example: pellucid bench sampling_hulls -s hulls=4 -s samples=8\n"
+      "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
+      "ratio\n"
+      "is the median over the blocks, so that it may differ a little from that of the medians. Times of different\n"
+      "machines or runs do not compare.");
+  commands.push_back({app, [options] { return bench(*options); }});
+}
+
+}  // namespace pellucid::sandbox

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "sweeps/stopping.hpp"
+
+/// What a technique's frame costs beside the least that its texture fetches and blends could cost: a bare shader over
+/// the same pixels, timed on the same device in the same run.
+namespace pellucid::sweeps {
+
+struct BenchRequest {
+  std::string scene, view;  ///< view: empty for the first
+  int width = 720;
+  int height = 540;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, as RenderSession::assign_text takes
+  int frames = 60;                                            ///< timed of each subject, rounded up to whole blocks
+};
+
+/// Of blocks that alternate between the subjects, so that a drift of the clock rate reaches them all: the median over
+/// the blocks of a ratio of the blocks' medians, and its bootstrap interval.
+struct BenchRatio {
+  double median = 0;
+  Interval ci95;
+};
+
+struct BenchResult {
+  static constexpr int kBlockFrames = 4;
+  int frames = 0;                 ///< timed of each subject
+  TimingSummary method, bare;     ///< whole frames
+  TimingSummary opaque;           ///< the passes over opaque objects that both share, alone
+  BenchRatio ratio;               ///< method / bare
+  std::optional<BenchRatio> own;  ///< (method − opaque) / (bare − opaque); nothing where the noise hides the hulls
+  std::string clock;              ///< gl::name(Clock)
+  double blends_per_pixel = 0;    ///< front faces that passed the depth test, over all pixels of the image
+  int fetches_per_blend = 0;      ///< of the bare shader; an upper bound of the method's where light is shadowed
+  double fetches_per_pixel = 0;   ///< their product
+};
+
+/// Throws InputError for a request that cannot be met, RuntimeError when the clock gives no usable time. Needs a
+/// current GL context. `recipe` receives what was drawn: scene, view, size and every parameter with its value.
+BenchResult bench_sampling_hulls(const BenchRequest&, nlohmann::json& recipe);
+
+/// The ratio that bench_sampling_hulls gives: of each `block` samples, median(a) − median(c) over median(b) −
+/// median(c); an empty `c` counts as zero. Nothing when so many denominators are not positive that the interval has no
+/// end.
+std::optional<BenchRatio> block_ratio(const std::vector<double>& a, const std::vector<double>& b,
+                                      const std::vector<double>& c, int block);
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,110 @@
+// pellucid bench.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace pellucid::test {
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+class Bench : public testing::Test {
+ protected:
+  Folder folder;
+  std::string scene = write_small_scene(folder).string();
+
+  Outcome bench(const Words& more = {}) const {
+    Words words{"bench", "sampling_hulls", "--scene", scene, "--size", "64x48", "--frames", "8"};
+    words.insert(words.end(), more.begin(), more.end());
+    return pellucid(words);
+  }
+  json measured(Words more = {}) const {
+    more.push_back("--json");
+    const Outcome outcome = bench(more);
+    EXPECT_TRUE(succeeded(outcome));
+    return json::parse(outcome.out);
+  }
+};
+
+void expect_interval(const json& row, const char* median, const char* low, const char* high) {
+  EXPECT_GT(row.at(median).get<double>(), 0);
+  EXPECT_GT(row.at(low).get<double>(), 0);
+  EXPECT_LE(row.at(low).get<double>(), row.at(median).get<double>());
+  EXPECT_GE(row.at(high).get<double>(), row.at(median).get<double>());
+}
+
+TEST_F(Bench, PrintsPositiveMediansAndTheirRatio) {
+  const json row = measured({"-s", "hulls=2", "-s", "samples=3"});
+  for (const char* subject : {"method", "bare", "opaque"})
+    expect_interval(row.at(subject), "frame_ms_median", "frame_ms_ci95_low", "frame_ms_ci95_high");
+  expect_interval(row.at("ratio"), "median", "ci95_low", "ci95_high");
+  EXPECT_TRUE(row.contains("ratio_without_opaque"));
+  EXPECT_EQ(row.at("frames"), 8);
+  EXPECT_EQ(row.at("width"), 64);
+  EXPECT_EQ(row.at("height"), 48);
+  EXPECT_EQ(row.at("parameters").at("hulls"), 2);
+  EXPECT_FALSE(row.at("device").get<std::string>().empty());
+  EXPECT_FALSE(row.at("clock").get<std::string>().empty());
+}
+
+TEST_F(Bench, CountsTheFetchesOfEachBlend) {
+  // One of the map and one of the density at each sample: the scene's light casts no shadow.
+  EXPECT_EQ(measured({"-s", "samples=3"}).at("fetches_per_blend"), 4);
+  EXPECT_EQ(measured({"-s", "samples=8"}).at("fetches_per_blend"), 9);
+}
+
+TEST_F(Bench, CountsBlendsWhereTheVolumeIsSeen) {
+  const json one = measured({"-s", "hulls=1"});
+  const json four = measured({"-s", "hulls=4"});
+  const double covered = one.at("blends_per_pixel").get<double>();
+  EXPECT_GT(covered, 0);
+  EXPECT_LE(covered, 1);
+  EXPECT_GT(four.at("blends_per_pixel").get<double>(), covered);
+  EXPECT_LE(four.at("blends_per_pixel").get<double>(), 4);
+  EXPECT_NEAR(four.at("fetches_per_pixel").get<double>(),
+              four.at("blends_per_pixel").get<double>() * four.at("fetches_per_blend").get<double>(), 1e-9);
+}
+
+TEST_F(Bench, FollowsTheSettingsOfShadowsAndFrame) {
+  const json row = measured({"-s", "shadow.size=64", "-s", "frame.format=single", "-s", "coordinates=single"});
+  EXPECT_EQ(row.at("parameters").at("shadow.size"), 64);
+  EXPECT_EQ(row.at("parameters").at("frame.format"), "single");
+  EXPECT_EQ(row.at("parameters").at("coordinates"), "single");
+}
+
+TEST_F(Bench, RoundsFramesUpToWholeBlocks) {
+  const Outcome outcome = bench({"--json", "--frames", "9"});
+  EXPECT_TRUE(refused(outcome, 2, {"frames"}));  // given twice
+  const Outcome once =
+      pellucid({"bench", "sampling_hulls", "--scene", scene, "--size", "32x24", "--frames", "9", "--json"});
+  ASSERT_TRUE(succeeded(once));
+  const json row = json::parse(once.out);
+  EXPECT_EQ(row.at("frames").get<int>() % row.at("block_frames").get<int>(), 0);
+  EXPECT_GE(row.at("frames").get<int>(), 9);
+}
+
+TEST_F(Bench, PrintsTheSameForPeople) {
+  const Outcome outcome = bench();
+  ASSERT_TRUE(succeeded(outcome));
+  for (const char* words : {"frame / bare", "blends per pixel", "texture fetches per pixel", "clock"})
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words;
+}
+
+TEST_F(Bench, RefusesWhatItCannotTime) {
+  EXPECT_TRUE(refused(pellucid({"bench", "sampling_hull"}), 2, {"sampling_hull", "did you mean 'sampling_hulls'"}));
+  EXPECT_TRUE(refused(pellucid({"bench", "volume_slices"}), 2, {"volume_slices", "sampling_hulls"}));
+  EXPECT_TRUE(refused(bench({"-s", "hull=4"}), 2, {"hull", "did you mean 'hulls'"}));
+  EXPECT_TRUE(refused(bench({"-s", "shadow.sise=4"}), 2, {"sise", "size"}));
+  EXPECT_TRUE(refused(pellucid({"bench", "sampling_hulls", "--frames", "1"}), 2, {"frames"}));
+  EXPECT_TRUE(refused(pellucid({"bench", "sampling_hulls", "--size", "64"}), 2, {"--size 64"}));
+}
+
+TEST_F(Bench, HelpShowsAnExample) {
+  const Outcome help = pellucid({"bench", "--help"});
+  ASSERT_TRUE(succeeded(help));
+  EXPECT_NE(help.out.find("Example: pellucid bench sampling_hulls"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pellucid::test
