@@ -43,6 +43,9 @@ Mesh make_shape(const SceneDescription& scene, const MeshDescription& mesh) {
       return make_torus(f(mesh.radius), f(mesh.minor_radius), segments);
     case MeshKind::teapot:
       return make_teapot(f(mesh.scale), segments);
+    case MeshKind::relief:
+      return make_relief({glm::vec2(mesh.plane_size), segments, f(mesh.height), f(mesh.frequency), whole(mesh.octaves),
+                          f(mesh.ripples), static_cast<std::uint32_t>(mesh.seed)});
     case MeshKind::file:
       break;
   }

@@ -98,7 +98,6 @@ void evaluate_transfer(const SceneDescription& description, Volume& volume) {
   }
 }
 
-
 std::vector<float> make_density(const VolumeDescription& from, const glm::ivec3& size) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const auto seed = static_cast<std::uint32_t>(from.seed);

@@ -34,9 +34,10 @@ void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, M
 
 void parse_shape(TableReader& reader, MeshDescription& mesh) {
   reader.require("shape");
-  static constexpr MeshKind kKinds[] = {MeshKind::sphere, MeshKind::box,   MeshKind::plane, MeshKind::cylinder,
-                                        MeshKind::cone,   MeshKind::torus, MeshKind::teapot};
-  mesh.kind = kKinds[reader.choice("shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "teapot"}, 0)];
+  static constexpr MeshKind kKinds[] = {MeshKind::sphere, MeshKind::box,   MeshKind::plane,  MeshKind::cylinder,
+                                        MeshKind::cone,   MeshKind::torus, MeshKind::teapot, MeshKind::relief};
+  mesh.kind =
+      kKinds[reader.choice("shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "teapot", "relief"}, 0)];
   switch (mesh.kind) {
     case MeshKind::sphere:
       reader.number("radius", mesh.radius, kLength);
@@ -65,6 +66,17 @@ void parse_shape(TableReader& reader, MeshDescription& mesh) {
       mesh.segments = 8;
       reader.number("scale", mesh.scale, kLength);
       reader.integer("subdivisions", mesh.segments, {1, 256});
+      break;
+    case MeshKind::relief:
+      mesh.segments = 64;
+      mesh.height = 0.1;
+      reader.vector("size", mesh.plane_size, kLength);
+      reader.integer("segments", mesh.segments, {1, 1024});
+      reader.number("height", mesh.height, {0, 1e6});
+      reader.number("frequency", mesh.frequency, {0, 1000});
+      reader.integer("octaves", mesh.octaves, {1, 12});
+      reader.number("ripples", mesh.ripples, kShare);
+      reader.integer("seed", mesh.seed, {0, 4294967295.0});
       break;
     case MeshKind::file:
       break;

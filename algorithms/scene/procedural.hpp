@@ -19,6 +19,18 @@ Mesh make_torus(float major_radius, float minor_radius, int segments);
 /// Newell's 32 bicubic patches (at most 2·subdivisions² triangles each), bottom included: stands on y = 0, the spout
 /// towards +x; the body's radius is `scale`, the height 1.575·scale. Lid, body, handle and spout are separate shells.
 Mesh make_teapot(float scale, int subdivisions);
+/// A plane in y = 0 with `segments` squares along its shorter side, raised by noise within ±height_m/2: sand, rock.
+/// Its sides reach down to −height_m/2; there is no bottom.
+struct ReliefOptions {
+  glm::vec2 size{1.0F};
+  int segments = 64;
+  float height_m = 0.1F;
+  float frequency = 3.0F;  ///< noise periods along the shorter side
+  int octaves = 3;
+  float ripples = 0.0F;  ///< share of the height that wind or waves have left as ripples
+  std::uint32_t seed = 1;
+};
+Mesh make_relief(const ReliefOptions&);
 
 /// A ground with relief and many trees of a few kinds, each kind a few meshes that are instanced, finer near the
 /// clearing. Appends meshes, materials and instances to `scene`. Instances are called ground, tree_0 … and

@@ -27,7 +27,7 @@ struct Placement {
   std::optional<Spin> spin;  ///< after the rotation
 };
 
-enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, teapot };
+enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, teapot, relief };
 struct MeshDescription {
   std::string name;
   Place place;
@@ -37,6 +37,7 @@ struct MeshDescription {
   glm::dvec3 size{1.0};
   glm::dvec2 plane_size{1.0};
   double segments = 32;
+  double frequency = 3, octaves = 3, ripples = 0, seed = 1;
 };
 
 struct MaterialDescription {
