@@ -292,27 +292,27 @@ struct Figure {
 const std::vector<Figure>& all_figures() {
   static const std::vector<Figure> kFigures{
       {{"sampling_hulls.fps", "Frame rate over the number of sampling hulls",
-        "frame rate over M, a line for each number of points M·N", "sampling_hulls_plane"},
+        "frame rate over M, a line for each number of points M·N", "sampling_hulls_curves"},
        {"fps"},
        fps_figure},
       {{"sampling_hulls.fps_map", "Frame rate over hulls and points",
-        "frame rate on the plane of M and N, the paper's choice 4×8 outlined", "sampling_hulls_plane"},
+        "frame rate on the plane of M and N, the paper's choice 4×8 outlined", "sampling_hulls_curves"},
        {"fps"},
        fps_map},
       {{"sampling_hulls.error", "Perceived error over the number of samples",
-        "mean FLIP over M·N, with weighted quartiles, for hulls and their baselines", "sampling_hulls_error"},
+        "mean FLIP over M·N, with weighted quartiles, for hulls and their baselines", "sampling_hulls_curves"},
        {"flip_mean"},
        [](const FigureInfo& info, const Rows& rows) {
          return error_figure(info, rows, "flip_mean", {"mean FLIP", "", Scale::log10, false});
        }},
       {{"sampling_hulls.rmse", "RMSE over the number of samples",
-        "root of the mean squared error of radiance over M·N, for hulls and their baselines", "sampling_hulls_error"},
+        "root of the mean squared error of radiance over M·N, for hulls and their baselines", "sampling_hulls_curves"},
        {"rmse"},
        [](const FigureInfo& info, const Rows& rows) {
          return error_figure(info, rows, "rmse", {"RMSE of radiance", "", Scale::log10, false});
        }},
       {{"sampling_hulls.error_time", "Perceived error against frame time",
-        "mean FLIP against the time of a frame, for hulls and their baselines", "sampling_hulls_error"},
+        "mean FLIP against the time of a frame, for hulls and their baselines", "sampling_hulls_curves"},
        {"flip_mean", "frame_ms_median"},
        error_time_figure},
   };

@@ -126,14 +126,6 @@ AxisLayout decimal_log_axis(double low, double high, int wanted) {
   return layout;
 }
 
-std::string superscript(int number) {
-  static const char* const kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text;
-  for (const char c : fmt::format("{}", number))
-    text += c == '-' ? "⁻" : kDigits[c - '0'];
-  return text;
-}
-
 }  // namespace
 
 double AxisLayout::position(double value) const {
@@ -161,7 +153,7 @@ std::string decimal_label(double value, int decimals) {
   const double size = std::abs(value);
   if (size >= 1e6 || decimals > 5) {
     const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-9));
-    return fmt::format("{:.3g}×10{}", value / std::pow(10.0, exponent), superscript(exponent));
+    return fmt::format("{:.3g}e{}", value / std::pow(10.0, exponent), exponent);
   }
   return fmt::format("{:.{}f}", value, decimals);
 }
@@ -170,15 +162,15 @@ std::string power_label(double value) {
   const int exponent = static_cast<int>(std::floor(std::log10(value) + 1e-9));
   const double mantissa = value / std::pow(10.0, exponent);
   if (exponent >= -3 && exponent <= 3) return fmt::format("{:.{}f}", value, std::max(0, -exponent));
-  if (std::abs(mantissa - 1) < 1e-9) return "10" + superscript(exponent);
-  return fmt::format("{:.0f}×10{}", mantissa, superscript(exponent));
+  // VTK's font has no raised digits but ² and ³; an exponent that is not drawn is a wrong number.
+  return fmt::format("{:.0f}e{}", mantissa, exponent);
 }
 
 std::string binary_label(double value) {
   const int exponent = static_cast<int>(std::lround(std::log2(value)));
   if (exponent >= 0 && exponent <= 20) return fmt::format("{:.0f}", value);
   if (exponent < 0 && exponent >= -10) return fmt::format("1/{:.0f}", 1 / value);
-  return "2" + superscript(exponent);
+  return fmt::format("2^{}", exponent);
 }
 
 }  // namespace pellucid::plots

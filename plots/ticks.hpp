@@ -26,7 +26,7 @@ struct AxisLayout {
 /// about how many labels there is room for.
 AxisLayout lay_out_axis(const Axis&, double low, double high, int wanted);
 
-/// "0.001", "2×10⁻⁵", "1/4": short, and exact for the values that ticks take.
+/// "0.001", "2e-5", "1/4": short, and exact for the values that ticks take.
 std::string decimal_label(double value, int decimals);
 std::string power_label(double value);   ///< for logarithmic axes to base 10
 std::string binary_label(double value);  ///< for logarithmic axes to base 2

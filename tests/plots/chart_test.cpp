@@ -1,0 +1,141 @@
+// Charts as files: well-formed, inside their frame, nothing dropped.
+#include "plots/chart.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include <expat.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "algorithms/scene/image.hpp"
+#include "gl/error.hpp"
+
+namespace pellucid::plots {
+namespace {
+
+std::string message(auto&& f) {
+  try {
+    f();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+// What expat finds in a document: its elements and all text.
+struct Parsed {
+  bool well_formed = false;
+  int paths = 0;
+  int clipped_and_moved = 0;  // one element with both: viewers then lose the plots
+  std::string text;
+};
+
+Parsed parse(const std::string& svg) {
+  Parsed parsed;
+  XML_Parser parser = XML_ParserCreate("UTF-8");
+  XML_SetUserData(parser, &parsed);
+  XML_SetElementHandler(
+      parser,
+      [](void* user, const XML_Char* element, const XML_Char** attributes) {
+        auto& out = *static_cast<Parsed*>(user);
+        const std::string name = element;
+        if (name == "polyline" || name == "path" || name == "polygon" || name == "line") ++out.paths;
+        bool moved = false, clipped = false;
+        for (; *attributes != nullptr; attributes += 2) {
+          moved = moved || std::strcmp(attributes[0], "transform") == 0;
+          clipped = clipped || std::strcmp(attributes[0], "clip-path") == 0;
+        }
+        if (moved && clipped) ++out.clipped_and_moved;
+      },
+      [](void*, const XML_Char*) {});
+  XML_SetCharacterDataHandler(parser, [](void* user, const XML_Char* s, int n) {
+    static_cast<Parsed*>(user)->text.append(s, static_cast<std::size_t>(n));
+  });
+  parsed.well_formed = XML_Parse(parser, svg.data(), static_cast<int>(svg.size()), 1) == XML_STATUS_OK;
+  XML_ParserFree(parser);
+  return parsed;
+}
+
+Chart sample() {
+  Chart chart;
+  chart.title = "A < B & \"C\"";
+  chart.note = "a note";
+  chart.x = {.label = "samples", .scale = Scale::log2};
+  chart.y = {.label = "error", .scale = Scale::log10};
+  chart.series.push_back({.label = "first", .points = {{1, 0.5, 0.4, 0.6}, {2, 0.1, 0.05, 0.2}, {64, 0.002}}});
+  chart.series.push_back({.label = "second",
+                          .points = {{1, 0.7}, {64, 0.01}},
+                          .style = {.color = {213, 94, 0}, .marker = Marker::square}});
+  return chart;
+}
+
+TEST(Chart, SvgIsWellFormedAndEscaped) {
+  const Parsed parsed = parse(to_svg(sample()));
+  EXPECT_TRUE(parsed.well_formed);
+  EXPECT_EQ(parsed.clipped_and_moved, 0);
+  Chart fewer = sample();
+  fewer.series.pop_back();
+  EXPECT_GT(parsed.paths, parse(to_svg(fewer)).paths) << "a second series draws more";
+}
+
+TEST(Chart, RefusesWhatCannotBeDrawn) {
+  Chart empty = sample();
+  empty.series.clear();
+  EXPECT_NE(message([&] { to_svg(empty); }), "no error");
+  Chart nan = sample();
+  nan.series[1].points[1].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(message([&] { to_svg(nan); }).find("second"), std::string::npos) << "the message names the series";
+  Chart negative = sample();
+  negative.series[0].points[0].y = -1;
+  EXPECT_NE(message([&] { to_svg(negative); }).find("first"), std::string::npos);
+  EXPECT_NE(message([&] { write_chart(sample(), "chart.gif"); }).find(".svg"), std::string::npos);
+}
+
+TEST(Chart, FilesAreWhatTheirNameSays) {
+  const auto folder = std::filesystem::temp_directory_path() / ("pellucid_chart_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  auto read = [](const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  };
+  write_chart(sample(), folder / "c.svg");
+  EXPECT_TRUE(parse(read(folder / "c.svg")).well_formed);
+  write_chart(sample(), folder / "c.pdf");
+  EXPECT_EQ(read(folder / "c.pdf").substr(0, 5), "%PDF-");
+  write_chart(sample(), folder / "c.png");
+  const Image image = read_image(folder / "c.png").image;
+  EXPECT_NEAR(static_cast<double>(image.width) / image.height, 460.0 / 340.0, 0.01);
+  // White paper, dark ink and both series' colours are on it.
+  bool white = false, dark = false, orange = false;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float* p = image.at(x, y);
+      white = white || (p[0] > 0.99F && p[1] > 0.99F && p[2] > 0.99F);
+      dark = dark || (p[0] < 0.2F && p[1] < 0.2F && p[2] < 0.2F);
+      orange =
+          orange || (std::abs(p[0] - 213 / 255.0F) < 0.02F && std::abs(p[1] - 94 / 255.0F) < 0.02F && p[2] < 0.02F);
+    }
+  }
+  EXPECT_TRUE(white && dark && orange);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(HeatMap, DrawsAndRefuses) {
+  HeatMap map;
+  map.title = "fps";
+  map.columns = {"1", "2"};
+  map.rows = {"1", "2", "4"};
+  map.values = {{1.0, 2.0}, {3.0, std::nullopt}, {5.0, 6.0}};
+  map.outlined = HeatMap::Cell{1, 0};
+  EXPECT_TRUE(parse(to_svg(map)).well_formed);
+  map.values[0][0] = std::numeric_limits<double>::infinity();
+  EXPECT_NE(message([&] { to_svg(map); }), "no error");
+}
+
+}  // namespace
+}  // namespace pellucid::plots
