@@ -136,6 +136,7 @@ void ForwardPass::upload_lights(const Scene& scene) {
   LightBlock block{};
   uniform_lighting_ = true;
   shadowed_ = false;
+  uniform_incident_ = scene.ambient;
   auto cosine = [](float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); };
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -144,6 +145,7 @@ void ForwardPass::upload_lights(const Scene& scene) {
                        glm::vec4(light.intensity, cosine(light.inner_angle_deg))};
     uniform_lighting_ = uniform_lighting_ && light.kind == LightKind::directional;
     shadowed_ = shadowed_ || light.casts_shadow;
+    uniform_incident_ += light.intensity / (4.0F * std::numbers::pi_v<float>);
   }
   block.ambient_count = glm::vec4(scene.ambient, static_cast<float>(scene.lights.size()));
   lights_.upload(std::span<const LightBlock>(&block, 1));

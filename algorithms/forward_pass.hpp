@@ -40,6 +40,8 @@ class ForwardPass {
 
   /// Binds what lighting.glsl and shadows.glsl read: the lights' uniform block, and shadow maps where there are any.
   void bind_lights() const;
+  /// ambient + Σ E / 4π where no light depends on the place (medium_radiance() of lighting.glsl).
+  const glm::vec3& uniform_incident() const { return uniform_incident_; }
   /// The defines that a program which includes them must be compiled with: SHADOWS where a light casts shadows, or
   /// UNIFORM_SOURCE where no light's irradiance depends on the place.
   gl::Defines light_defines() const;
@@ -82,6 +84,7 @@ class ForwardPass {
   gl::Texture environment_;
   Environment gradient_;
   bool uniform_lighting_ = true;
+  glm::vec3 uniform_incident_{0.0F};
   std::uint64_t revision_ = 0;
   ShadowMaps shadows_;
   std::optional<std::uint64_t> shadow_revision_;

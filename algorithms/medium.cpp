@@ -71,12 +71,13 @@ gl::Defines Medium::defines(gl::Defines light_defines) const {
   return light_defines;
 }
 
-void Medium::bind(const gl::Program& program, const Volume& volume) const {
+void Medium::bind(const gl::Program& program, const Volume& volume, const glm::vec3& incident) const {
   density_.bind(0);
   program.set("volume_to_world", volume.to_world);
   program.set("volume_extinction", volume.extinction);
   program.set("volume_albedo", volume.albedo);
   program.set("volume_emission", volume.emission);
+  program.set("uniform_source", volume.emission + volume.albedo * incident);
   if (transfer_) {
     transfer_.bind(3);
     program.set("transfer_range", transfer_range_);

@@ -17,8 +17,9 @@ class Medium {
   /// The defines of the forward pass, adapted to what this volume needs of medium.glsl: TRANSFER with a transfer
   /// function, LIGHT_SPACE for a volume in a light's space.
   gl::Defines defines(gl::Defines light_defines) const;
-  /// Binds the maps (units 0, 3 and 4) and sets the uniforms of medium.glsl.
-  void bind(const gl::Program&, const Volume&) const;
+  /// Binds the maps (units 0, 3 and 4) and sets the uniforms of medium.glsl. `incident`:
+  /// ForwardPass::uniform_incident().
+  void bind(const gl::Program&, const Volume&, const glm::vec3& incident) const;
 
  private:
   gl::Texture density_, transfer_, scattering_;

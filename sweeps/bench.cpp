@@ -139,7 +139,7 @@ class BareHulls {
     back_.set("local_to_clip", local_to_clip);
     front_.set("local_to_clip", local_to_clip);
     front_.set("step_local", step_local_);
-    medium_.bind(front_, *scene_.volume);
+    medium_.bind(front_, *scene_.volume, glm::vec3(0.0F));  // it only sums
     map_.bind(1);
     forward_.bind_lights();
   }

@@ -63,7 +63,7 @@ class RayMarching final : public Technique {
     program_.set("near_m", camera.view.near_m);
     program_.set("samples", parameters_.samples);
     program_.set("sample_offset", parameters_.sample_offset);
-    medium_->bind(program_, volume);
+    medium_->bind(program_, volume, forward.uniform_incident());
     forward.bind_lights();
     distance_.bind(1);
     program_.use();

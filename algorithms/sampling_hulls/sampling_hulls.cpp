@@ -69,7 +69,7 @@ class SamplingHulls final : public Technique {
     front_.set("world_to_local", world_to_local);
     front_.set("eye", camera.view.eye);
     front_.set("sample_offset", parameters_.sample_offset);
-    medium_->bind(front_, volume);
+    medium_->bind(front_, volume, forward.uniform_incident());
     map_.bind(1);
     forward.bind_lights();
     for (int hull = 0; hull < geometry_.pieces(); ++hull) {

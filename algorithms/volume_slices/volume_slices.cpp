@@ -42,7 +42,7 @@ class VolumeSlices final : public Technique {
     program_.set("eye", camera.view.eye);
     program_.set("slab_axis", slab_axis_);
     program_.set("slab_m", slab_m_);
-    medium_->bind(program_, volume);
+    medium_->bind(program_, volume, forward.uniform_incident());
     forward.bind_lights();
     program_.use();
     if (geometry_.pieces() > 0) geometry_.draw(0);

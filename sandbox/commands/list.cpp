@@ -196,7 +196,7 @@ void add_list(CLI::App& root, std::vector<Command>& commands) {
   CLI::App* devices_app = root.add_subcommand("devices", "List the devices that can render");
   devices_app->add_flag("--json", options->json, "Print JSON");
   devices_app->footer(
-      "Example: pellucid devices\nThe number is what --device takes; without it the first device is used.");
+      "Example: pellucid devices --json\nThe number is what --device takes; without it the first device is used.");
   commands.push_back({devices_app, [options] { return devices(options->json); }});
 }
 

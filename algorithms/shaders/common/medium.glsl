@@ -7,6 +7,9 @@ uniform mat4 volume_to_world;
 uniform float volume_extinction;  // φ at density 1 [1/m]
 uniform vec3 volume_albedo;
 uniform vec3 volume_emission;
+#ifdef UNIFORM_SOURCE
+uniform vec3 uniform_source;  // no light depends on the place, so neither does C0: it is computed once
+#endif
 
 #ifdef TRANSFER
 layout(binding = 3) uniform sampler2D transfer_map;  // rgb: albedo, a: φ; one row over the densities of transfer_range
@@ -41,8 +44,7 @@ vec3 medium_world(vec3 local) { return (volume_to_world * vec4(local, 1.0)).xyz;
 // Source radiance C0 where `visible` is the share of each light that reaches the point.
 vec3 medium_source(vec3 local, vec3 albedo, vec4 visible) {
 #if defined(UNIFORM_SOURCE)
-  // No light depends on the place, so neither does the source.
-  return medium_radiance(vec3(0.0), albedo, volume_emission, vec4(1.0));
+  return uniform_source;
 #elif defined(LIGHT_SPACE)
   float irradiance = textureLod(scattering_map, local, 0.0).r * visible[volume_light];
   return volume_emission + albedo * (ambient_count.rgb + lights[volume_light].intensity_inner.rgb * (irradiance / (4.0 * kPi)));
