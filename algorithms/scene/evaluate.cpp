@@ -196,6 +196,7 @@ std::vector<Affected> all_parts(const SceneDescription& description) {
   add(Part::view, description.views.size());
   add(Part::voxels, description.volume ? 1 : 0);
   add(Part::scattering, description.volume ? 1 : 0);
+  add(Part::transfer, description.volume ? 1 : 0);
   add(Part::medium, description.volume ? 1 : 0);
   add(Part::environment, 1);
   add(Part::ambient, 1);
@@ -223,6 +224,8 @@ void evaluate(SceneDescription& description, Affected what, double time_s, Scene
       return evaluate_voxels(description, scene);
     case Part::scattering:
       return evaluate_scattering(description, scene);
+    case Part::transfer:
+      return evaluate_transfer(description, scene);
     case Part::medium:
       return evaluate_medium(description, time_s, scene);
     case Part::environment:

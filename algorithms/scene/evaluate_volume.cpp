@@ -85,19 +85,6 @@ glm::dmat4 given_box(const SceneDescription& description, double time_s) {
   return to_world;
 }
 
-void evaluate_transfer(const SceneDescription& description, Volume& volume) {
-  volume.transfer.clear();
-  for (const TransferDescription& point : description.volume->transfer) {
-    const auto density = static_cast<float>(point.density);
-    if (!volume.transfer.empty() && !(density > volume.transfer.back().density)) {
-      throw description.file.error(
-          point.place, fmt::format("volume.transfer[{}]: density {} does not follow {}; densities must rise",
-                                   volume.transfer.size(), point.density, volume.transfer.back().density));
-    }
-    volume.transfer.push_back({density, static_cast<float>(point.extinction), glm::vec3(point.albedo)});
-  }
-}
-
 std::vector<float> make_density(const VolumeDescription& from, const glm::ivec3& size) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const auto seed = static_cast<std::uint32_t>(from.seed);
@@ -157,6 +144,20 @@ void evaluate_scattering(const SceneDescription& description, Scene& scene) {
   scene.volume->scattering = make_cone_scattering(scene.volume->size, cone);
 }
 
+void evaluate_transfer(const SceneDescription& description, Scene& scene) {
+  Volume& volume = *scene.volume;
+  volume.transfer.clear();
+  for (const TransferDescription& point : description.volume->transfer) {
+    const auto density = static_cast<float>(point.density);
+    if (!volume.transfer.empty() && !(density > volume.transfer.back().density)) {
+      throw description.file.error(
+          point.place, fmt::format("volume.transfer[{}]: density {} does not follow {}; densities must rise",
+                                   volume.transfer.size(), point.density, volume.transfer.back().density));
+    }
+    volume.transfer.push_back({density, static_cast<float>(point.extinction), glm::vec3(point.albedo)});
+  }
+}
+
 void evaluate_medium(const SceneDescription& description, double time_s, Scene& scene) {
   const VolumeDescription& from = *description.volume;
   Volume& volume = *scene.volume;
@@ -171,7 +172,6 @@ void evaluate_medium(const SceneDescription& description, double time_s, Scene& 
   volume.extinction = static_cast<float>(from.extinction);
   volume.albedo = glm::vec3(from.albedo);
   volume.emission = glm::vec3(from.emission);
-  evaluate_transfer(description, volume);
 }
 
 }  // namespace pellucid

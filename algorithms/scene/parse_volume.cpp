@@ -140,7 +140,7 @@ void parse_light_space(TableReader& reader, VolumeDescription& volume, SceneDesc
 
 void parse_transfer(TableReader& parent, VolumeDescription& volume) {
   for (TableReader& reader : parent.tables("transfer", Need::optional)) {
-    reader.set_affected(Affected{Part::medium, 0});
+    reader.set_affected(Affected{Part::transfer, 0});
     TransferDescription& point = volume.transfer.emplace_back();
     point.place = reader.place();
     reader.number("density", point.density, {0, 1e6}, Need::required);

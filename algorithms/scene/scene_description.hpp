@@ -202,6 +202,7 @@ void evaluate(SceneDescription&, Affected, double time_s, Scene&);
 void evaluate_voxels(SceneDescription&, Scene&);
 /// The scattering at the voxels of a volume in a light's space; its box is left alone.
 void evaluate_scattering(const SceneDescription&, Scene&);
+void evaluate_transfer(const SceneDescription&, Scene&);
 void evaluate_medium(const SceneDescription&, double time_s, Scene&);
 /// Shared by instances and the volume.
 glm::dmat3 turn(const SceneDescription&, const Placement&, Place, double time_s);

@@ -32,14 +32,16 @@ std::vector<float> make_smoke_density(const glm::ivec3& size, const SmokeOptions
   assert(options.octaves >= 1 && options.frequency >= 0.0F);
   assert(options.contrast >= 0.0F && options.contrast <= 1.0F && options.swirl >= 0.0F);
   constexpr float kFade = 0.12F;                     // share of the box over which it fades towards the faces
-  constexpr float kFoot = 0.07F, kWidening = 0.20F;  // radius at the bottom, and what it gains up to the top
+  constexpr float kFoot = 0.06F, kWidening = 0.16F;  // radius at the bottom, and what it gains up to the top
   constexpr float kPeriods = 1.7F;                   // of the swirl across the box
   std::vector<float> density(voxel_count(size), 0.0F);
   for_each_row(size, density, [&](int j, int k, std::span<float> row) {
     const float v = voxel_centre(j, size.y), w = voxel_centre(k, size.z);
     const float radius = kFoot + kWidening * v;
     const float thinning = kFoot * kFoot / (radius * radius) * 0.7F + 0.3F;  // part of it spreads over the wider plume
-    const float fade = away_from_faces(v, size.y, kFade) * away_from_faces(w, size.z, kFade);
+    // It dissolves towards the top long before it gets there.
+    const float rising = size.y == 1 ? 1.0F : 1.0F - glm::smoothstep(0.45F, 1.0F, v);
+    const float fade = rising * away_from_faces(v, size.y, kFade) * away_from_faces(w, size.z, kFade);
     if (fade == 0.0F) return;
     for (std::size_t i = 0; i < row.size(); ++i) {
       const float u = voxel_centre(static_cast<int>(i), size.x);
@@ -47,14 +49,15 @@ std::vector<float> make_smoke_density(const glm::ivec3& size, const SmokeOptions
       if (sides == 0.0F) continue;
       // Carried along: what is here now was at `from`, the farther away the longer it has risen.
       const glm::vec2 drift =
-          0.25F * options.swirl * v * swirl_at(kPeriods * glm::vec3(u, v, w), options.seed * 131U + 77U);
+          0.3F * options.swirl * v * swirl_at(kPeriods * glm::vec3(u, v, w), options.seed * 131U + 77U);
       const glm::vec2 from = glm::vec2(u, w) - drift;
       const float off_axis = glm::length(from - 0.5F) / radius;
       const float plume = std::exp(-off_axis * off_axis);
       if (plume < 1e-4F) continue;
-      const float noise = fractal_noise(glm::vec3(from.x, v, from.y) * options.frequency + 0.618F, options.octaves,
-                                        options.seed * 131U);
-      const float thickness = std::clamp(0.5F + 1.6F * noise, 0.0F, 1.0F);
+      // Drawn out upwards.
+      const float noise = fractal_noise(glm::vec3(from.x, 0.6F * v, from.y) * options.frequency + 0.618F,
+                                        options.octaves, options.seed * 131U);
+      const float thickness = std::clamp(0.45F + 2.4F * noise, 0.0F, 1.0F);
       row[i] = sides * thinning * plume * (1.0F - options.contrast * (1.0F - thickness));
     }
   });

@@ -50,7 +50,20 @@ inline constexpr NumberRange kRadiance{0, 1e9};
 inline constexpr NumberRange kAngleDeg{-36000, 36000};
 
 /// The parts of a scene that are evaluated separately, in this order.
-enum class Part { mesh, forest, material, instance, light, view, voxels, scattering, medium, environment, ambient };
+enum class Part {
+  mesh,
+  forest,
+  material,
+  instance,
+  light,
+  view,
+  voxels,
+  scattering,
+  transfer,
+  medium,
+  environment,
+  ambient
+};
 struct Affected {
   Part part = Part::ambient;
   std::size_t index = 0;

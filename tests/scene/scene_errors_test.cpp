@@ -68,7 +68,8 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
       // objects
       {"[meshes.a]\n", "5:1: 'shape' is missing in meshes.a"},
       {"[meshes.a]\nshape = \"sfere\"\n",
-       "6:9: meshes.a.shape = 'sfere' is not one of sphere, box, plane, cylinder, cone, torus, teapot; did you mean "
+       "6:9: meshes.a.shape = 'sfere' is not one of sphere, box, plane, cylinder, cone, torus, teapot, relief; did you "
+       "mean "
        "'sphere'?"},
       {"[meshes.a]\nshape = \"sphere\"\nsegments = 2\n", "7:12: meshes.a.segments = 2 is out of range [3, 2048]"},
       {"[meshes.a]\nshape = \"sphere\"\nsegments = 8.5\n", "7:12: meshes.a.segments must be an integer, not a number"},
@@ -115,7 +116,52 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
        "5:1: volume: 2048 x 2048 x 2048 voxels; at most 2^30 are allowed"},
       {"[volume]\nkind = \"fog\"\nvoxels = 4096\n", "7:10: volume.voxels = 4096 is out of range [1, 2048]"},
       {"[volume]\nkind = \"ball\"\nseed = 3\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nextinction = 1\n",
-       "7:1: unknown key 'seed' in volume; known are kind, voxels, density, min, max, extinction, albedo, emission"},
+       "7:1: unknown key 'seed' in volume; known are kind, voxels, density, min, max, extinction, albedo, emission, "
+       "transfer"},
+      // shadows, transfer functions, volumes in a light's space
+      {"[lights.a]\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = 1\nshadow = 1\n",
+       "9:10: lights.a.shadow must be true or false, not an integer"},
+      {"[lights.a]\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = 1\nshadows = true\n",
+       "9:1: unknown key 'shadows' in lights.a; did you mean 'shadow'?"},
+      {"[volume]\nkind = \"fog\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nextinction = 1\n[[volume.transfer]]\ndensity = "
+       "1\nextinction = 1\n",
+       "10:1: volume.transfer: a transfer function has at least two points"},
+      {"[volume]\nkind = \"fog\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nextinction = 1\n[[volume.transfer]]\ndensity = "
+       "1\nextinction = 1\n[[volume.transfer]]\ndensity = 1\nextinction = 2\n",
+       "13:1: volume.transfer[1]: density 1 does not follow 1; densities must rise"},
+      {"[volume]\nkind = \"fog\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nextinction = 1\n[[volume.transfer]]\ndensty = "
+       "1\nextinction = 1\n",
+       "11:1: 'density' is missing in volume.transfer[0]; is it 'densty'?"},
+      {"[volume]\nkind = \"fog\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nextinction = 1\ntransfer = 3\n",
+       "10:12: volume.transfer must be an array of tables, not an integer"},
+      {"[lights.sun]\nkind = \"directional\"\nintensity = 1\nazimuth_deg = 1\n[volume]\nkind = \"fog\"\nlight = "
+       "\"sun\"\nrange_m = 2\nextinction = 1\n",
+       "11:9: volume.light: 'sun' is no spot light; a volume lies in the space of a spot"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\n[volume]\nkind = "
+       "\"fog\"\nlight = \"lam\"\nrange_m = 2\nextinction = 1\n",
+       "12:9: volume.light: there is no light 'lam'; did you mean 'lamp'?"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\n[volume]\nkind = "
+       "\"fog\"\nlight = \"lamp\"\nrange_m = 2\nsize = 1\nextinction = 1\n",
+       "14:8: volume.size and volume.light exclude each other"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\n[volume]\nkind = "
+       "\"fog\"\nlight = \"lamp\"\nextinction = 1\n",
+       "10:1: 'range_m' is missing in volume"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\n[volume]\nkind = "
+       "\"fog\"\nlight = \"lamp\"\nnear_m = 2\nrange_m = 2\nextinction = 1\n",
+       "10:1: volume: near_m 2 must be below range_m 2"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\n[volume]\nkind = "
+       "\"fog\"\nlight = \"lamp\"\nnear_m = 0\nrange_m = 2\nextinction = 1\n",
+       "13:10: volume.near_m = 0 is out of range [0.01, 1000000]"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nouter_angle_deg = "
+       "85\n[volume]\nkind = \"fog\"\nlight = \"lamp\"\nrange_m = 2\nextinction = 1\n",
+       "5:1: lights.lamp: outer_angle_deg 85 is above 80, the widest for a volume in a light's space"},
+      {"[lights.lamp]\nkind = \"spot\"\nintensity = 1\nposition = [0, 0, 0]\ndirection = [0, 0, "
+       "1]\ndirection_path = { keyframes = [] }\n",
+       "10:18: lights.lamp.direction_path and lights.lamp.direction exclude each other"},
+      {"[volume]\nkind = \"smok\"\n",
+       "6:8: volume.kind = 'smok' is not one of constant, fog, ball, smoke, water, file; did you mean 'smoke'?"},
+      {"[volume]\nkind = \"water\"\nlevel = 1.5\n", "7:9: volume.level = 1.5 is out of range [0, 1]"},
+      {"[volume]\nkind = \"file\"\n", "5:1: 'file' is missing in volume"},
       // the environment
       {"[environment]\nimage = \"a.exr\"\nzenith = 1\n",
        "6:9: environment.image and environment.zenith exclude each other"},
@@ -167,6 +213,25 @@ TEST_F(SceneErrors, FilesThatCannotBeReadAreNamedWhereTheyAreUsed) {
   EXPECT_EQ(error_of(mesh), "6:8: '" + file("m.off").string() + "' does not exist");
   write("m.off", "");
   EXPECT_EQ(error_of(mesh), "6:8: cannot read mesh '" + file("m.off").string() + "': the file is empty");
+  const std::string volume = std::string(kSound) + "[volume]\nkind = \"file\"\nfile = \"v.inr\"\ncenter = [0, 0, 0]\n";
+  EXPECT_EQ(error_of(volume), "7:8: '" + file("v.inr").string() + "' does not exist");
+  write("v.inr", "x");
+  EXPECT_EQ(error_of(volume),
+            "7:8: cannot read volume '" + file("v.inr").string() + "': it does not begin with '#INRIMAGE-4#{'");
+  EXPECT_EQ(error_of(volume + "range = [2, 1]\n"), "9:9: volume.range: [2, 1] is empty");
+  EXPECT_EQ(error_of(volume + "voxels = 8\n"),
+            "7:8: cannot read volume '" + file("v.inr").string() + "': it does not begin with '#INRIMAGE-4#{'");
+  const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 1 1\nspacings: 1e9 1 1\nencoding: raw\n\n";
+  std::string flat = volume;
+  flat.replace(flat.find("v.inr"), 5, "v.nrrd");
+  write("v.nrrd", nrrd + "33");
+  EXPECT_EQ(error_of(flat), "7:8: its values are all 51; state what shall be 0 and 1: range = [low, high]");
+  write("v.nrrd", nrrd + "34");
+  EXPECT_EQ(
+      error_of(flat + "extinction = 1\n"),
+      "7:8: volume.file: its spacing makes the box 2000000000 x 1 x 1 m, out of [1e-06, 1000000]; give size or fit_m");
+  EXPECT_EQ(error_of(flat + "fit_m = 2\nsize = 1\nextinction = 1\n"),
+            "9:9: volume.fit_m and volume.size exclude each other");
   const std::string sky = std::string(kSound) + "[environment]\nimage = \"sky.exr\"\n";
   write("sky.exr", "no picture");
   EXPECT_EQ(error_of(sky), "6:9: cannot read image '" + file("sky.exr").string() + "': neither OpenEXR nor PNG");
