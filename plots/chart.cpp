@@ -26,6 +26,7 @@ namespace pellucid::plots {
 namespace {
 
 constexpr double kMarkerSize = 7;
+constexpr double kLooseMarkerSize = 5.5;  ///< of points that no line joins
 constexpr double kLineWidth = 1.6;
 constexpr double kLegendSample = 26;  ///< length of the line in a legend entry [px]
 constexpr double kLegendGap = 16;
@@ -93,7 +94,7 @@ std::vector<std::vector<const Series*>> legend_rows(const Chart& chart, double w
 void paint_legend(Painter& painter, const std::vector<std::vector<const Series*>>& rows, const Frame& frame) {
   double y = frame.legend_top - kLegendRow / 2;
   for (const auto& row : rows) {
-    double x = frame.left;
+    double x = kMargin;
     for (const Series* series : row) {
       painter.line(x, y, x + kLegendSample, y, series->style.color, kLineWidth, series->style.line);
       painter.marker(x + kLegendSample / 2, y, kMarkerSize, series->style.marker, series->style.color);
@@ -112,6 +113,7 @@ void set_axis(vtkAxis* axis, const AxisLayout& layout, double length) {
   vtkNew<vtkDoubleArray> positions;
   vtkNew<vtkStringArray> labels;
   for (const Tick& tick : layout.ticks) {
+    if (tick.label.empty()) continue;  // a grid line for each minor tick would be a hatching
     positions->InsertNextValue(layout.position(tick.value) * length);
     labels->InsertNextValue(tick.label);
   }
@@ -150,6 +152,18 @@ void add_line(vtkChartXY* chart, const Series& series, const std::vector<Point>&
                                                                   : vtkPen::SOLID_LINE);
 }
 
+void paint_minor_ticks(Painter& painter, const Frame& frame, const AxisLayout& x, const AxisLayout& y) {
+  constexpr double kLength = 2.5;
+  for (const Tick& tick : x.ticks) {
+    const double at = frame.left + x.position(tick.value) * frame.width();
+    if (tick.label.empty()) painter.line(at, frame.bottom, at, frame.bottom - kLength, kInk, 0.8);
+  }
+  for (const Tick& tick : y.ticks) {
+    const double at = frame.bottom + y.position(tick.value) * frame.height();
+    if (tick.label.empty()) painter.line(frame.left, at, frame.left - kLength, at, kInk, 0.8);
+  }
+}
+
 void paint_interval(Painter& painter, const Frame& frame, const Point& placed, const Color& color) {
   if (!placed.low && !placed.high) return;
   const double x = frame.left + placed.x;
@@ -179,16 +193,18 @@ std::string to_svg(const Chart& chart) {
   Extent x, y;
   extents(chart, x, y);
 
-  Frame frame = outer_frame(chart.title, chart.note, chart.width_px, chart.height_px);
+  const auto rows = legend_rows(chart, chart.width_px - 2 * kMargin);
+  const int page_height =
+      chart.height_px + std::max(0, static_cast<int>(rows.size()) - 1) * static_cast<int>(kLegendRow);
+  Frame frame = outer_frame(chart.title, chart.note, chart.width_px, page_height);
   AxisLayout y_layout = lay_out_axis(chart.y, y.low, y.high, std::max(3, static_cast<int>(chart.height_px / 55)));
   double widest = 0;
   for (const Tick& tick : y_layout.ticks)
     widest = std::max(widest, text_width(tick.label, kTickText));
   frame.left += kAxisTitleRow + widest + 10;
-  const auto rows = legend_rows(chart, frame.right - frame.left);
   frame.top -= static_cast<double>(rows.size()) * kLegendRow + (rows.empty() ? 0 : 4);
   frame.bottom += kTickText.size_px + 12 + kAxisTitleRow;
-  const AxisLayout x_layout = lay_out_axis(chart.x, x.low, x.high, std::max(4, static_cast<int>(frame.width() / 40)));
+  const AxisLayout x_layout = lay_out_axis(chart.x, x.low, x.high, std::max(4, static_cast<int>(frame.width() / 36)));
   check_frame(frame, chart.title);
 
   vtkNew<vtkChartXY> plot;
@@ -215,10 +231,11 @@ std::string to_svg(const Chart& chart) {
     if (series.style.line != Line::none && points.size() > 1) add_line(plot, series, points);
   }
 
-  SvgScene scene{chart.width_px, chart.height_px, chart.title, description(chart), plot, {}};
+  SvgScene scene{chart.width_px, page_height, chart.title, description(chart), plot, {}};
   scene.paint = [&](Painter& painter) {
     paint_frame_texts(painter, frame, chart.title, chart.note, axis_title(chart.x), axis_title(chart.y));
     paint_legend(painter, rows, frame);
+    paint_minor_ticks(painter, frame, x_layout, y_layout);
     for (std::size_t s = 0; s < placed.size(); ++s) {
       for (const Point& point : placed[s])
         paint_interval(painter, frame, point, chart.series[s].style.color);
@@ -226,7 +243,10 @@ std::string to_svg(const Chart& chart) {
     for (std::size_t s = 0; s < placed.size(); ++s) {
       const Style& style = chart.series[s].style;
       for (const Point& point : placed[s]) {
-        painter.marker(frame.left + point.x, frame.bottom + point.y, kMarkerSize, style.marker, style.color);
+        // Loose points stand back, and a rim would cut the lines under them.
+        const bool joined = style.line != Line::none;
+        painter.marker(frame.left + point.x, frame.bottom + point.y, joined ? kMarkerSize : kLooseMarkerSize,
+                       style.marker, style.color, joined);
       }
     }
   };

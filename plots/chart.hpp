@@ -54,8 +54,8 @@ struct Chart {
   std::string note{};  ///< small print below the plot: device, clock, what the bars are; wrapped to the width
   Axis x, y;
   std::vector<Series> series;
-  int width_px = 460;  ///< CSS pixels; the default sets 8 pt type in a 3.4 inch column
-  int height_px = 340;
+  int width_px = 460;   ///< CSS pixels; the default sets 8 pt type in a 3.4 inch column
+  int height_px = 340;  ///< with one row of legend; each further row adds its own height
 };
 
 /// A number on each cell of a plane of categories, coloured by its value.

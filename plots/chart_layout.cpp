@@ -47,7 +47,7 @@ void paint_frame_texts(Painter& painter, const Frame& frame, const std::string& 
     painter.text(kMargin, y, line, kTitleText);
     y -= kTitleRow;
   }
-  painter.text((frame.left + frame.right) / 2, frame.note_top + 5, x_title, kAxisText);
+  painter.text((frame.left + frame.right) / 2, frame.note_top + 8, x_title, kAxisText);
   TextStyle upright = kAxisText;
   upright.upright = true;
   upright.vertical = Align::high;

@@ -46,14 +46,6 @@ Rows with_budget(Rows rows) {
   return rows;
 }
 
-Rows of_hulls(Rows rows) {
-  std::erase_if(rows.kept, [](const json* row) {
-    return row->value("technique", std::string()) != "sampling_hulls" || !budget(*row);
-  });
-  if (rows.kept.empty()) throw InputError("nothing to draw: no row is of sampling_hulls");
-  return rows;
-}
-
 /// Rows that an axis to base 10 can show; the others are counted in `dropped`.
 Rows positive(Rows rows, const std::string& field, std::size_t& dropped) {
   dropped = std::erase_if(rows.kept, [&](const json* row) { return *number(*row, field) <= 0; });
@@ -93,11 +85,10 @@ Point fps_point(double x, const json& row) {
 }
 
 /// FPS over M, a line for each M·N.
-std::string fps_figure(const FigureInfo& info, const Rows& all) {
-  const Rows rows = of_hulls(all);
-  const std::vector<std::string> own{"hulls", "samples"};
+std::string fps_figure(const FigureInfo& info, const Rows& rows) {
   std::map<double, std::vector<Group>> lines;
-  const std::vector<Group> groups = group_rows(rows, own);
+  const std::vector<Group> groups = group_rows(rows, kBudgetSettings);
+  check_distinct(groups, kBudgetSettings);
   for (const Group& group : groups) {
     std::map<double, Group> parts;
     for (const json* row : group.rows) {
@@ -134,10 +125,10 @@ std::string fps_figure(const FigureInfo& info, const Rows& all) {
   return to_svg(chart);
 }
 
-std::string fps_map(const FigureInfo& info, const Rows& all) {
-  const Rows rows = of_hulls(all);
-  const std::vector<std::string> own{"hulls", "samples"};
-  if (const auto groups = group_rows(rows, own); groups.size() > 1) {
+std::string fps_map(const FigureInfo& info, const Rows& rows) {
+  const std::vector<Group> groups = group_rows(rows, kBudgetSettings);
+  check_distinct(groups, kBudgetSettings);
+  if (groups.size() > 1) {
     throw InputError(
         fmt::format("'{}' shows one setting beside M and N, the rows have {}: '{}', '{}'{}; choose with "
                     "--where",
@@ -206,6 +197,17 @@ std::string zero_note(std::size_t dropped) {
   return fmt::format("{} without any error left out.", dropped == 1 ? "1 point" : fmt::format("{} points", dropped));
 }
 
+/// How exact the reference is: errors below that mean nothing.
+std::string reference_note(const Rows& rows) {
+  double mean = 0, most = 0;
+  for (const json* row : rows.kept) {
+    mean = std::max(mean, number(*row, "reference_step_error_mean").value_or(0));
+    most = std::max(most, number(*row, "reference_step_error_max").value_or(0));
+  }
+  if (most <= 0) return "";
+  return fmt::format(" The reference's own step error: {:.1e} in the mean, {:.1e} at most.", mean, most);
+}
+
 /// Error over the number of volume samples along a ray.
 std::string error_figure(const FigureInfo& info, const Rows& all, const std::string& field, const Axis& axis) {
   std::size_t dropped = 0;
@@ -214,7 +216,8 @@ std::string error_figure(const FigureInfo& info, const Rows& all, const std::str
   chart.title = info.title;
   chart.x = {"samples along a ray (M·N, slices)", "", Scale::log2, false};
   chart.y = axis;
-  const std::vector<Group> groups = group_rows(rows, kBudgetSettings);
+  const std::vector<Group> groups = group_rows(rows, kBudgetSettings, Labels::unusual);
+  check_distinct(groups, kBudgetSettings);
   bool chosen = false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::map<double, const json*> best;
@@ -237,9 +240,12 @@ std::string error_figure(const FigureInfo& info, const Rows& all, const std::str
     add_technique(chart, groups[g], std::move(shown), std::move(others), g, shift);
   }
   check_series_count(chart);
-  chart.note = joined({provenance_note(rows, false),
-                       field == "flip_mean" ? "Bars: weighted quartiles of FLIP, moved sideways to stay apart." : "",
-                       chosen ? "Joined: the best M×N of each product; faint: the others." : "", zero_note(dropped)});
+  chart.note =
+      joined({provenance_note(rows, false),
+              field == "flip_mean" ? "Bars: quartiles of FLIP weighted by itself, moved sideways to stay apart." : "",
+              chosen ? "Joined: the best M×N of each product; faint: the others." : "",
+              usual_note(rows, kBudgetSettings), zero_note(dropped)});
+  if (field == "rmse") chart.note += reference_note(rows);
   return to_svg(chart);
 }
 
@@ -251,7 +257,8 @@ std::string error_time_figure(const FigureInfo& info, const Rows& all) {
   chart.title = info.title;
   chart.x = {"frame time", "ms", Scale::log10, false};
   chart.y = {"mean FLIP", "", Scale::log10, false};
-  const std::vector<Group> groups = group_rows(rows, kBudgetSettings);
+  const std::vector<Group> groups = group_rows(rows, kBudgetSettings, Labels::unusual);
+  check_distinct(groups, kBudgetSettings);
   bool chosen = false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<std::pair<double, Point>> points;
@@ -279,7 +286,7 @@ std::string error_time_figure(const FigureInfo& info, const Rows& all) {
   check_series_count(chart);
   chart.note =
       joined({provenance_note(rows, true), chosen ? "Joined: settings that none beats in both; faint: the others." : "",
-              zero_note(dropped)});
+              usual_note(rows, kBudgetSettings), zero_note(dropped)});
   return to_svg(chart);
 }
 
@@ -293,11 +300,11 @@ const std::vector<Figure>& all_figures() {
   static const std::vector<Figure> kFigures{
       {{"sampling_hulls.fps", "Frame rate over the number of sampling hulls",
         "frame rate over M, a line for each number of points M·N", "sampling_hulls_curves"},
-       {"fps"},
+       {"hulls", "samples", "fps"},
        fps_figure},
       {{"sampling_hulls.fps_map", "Frame rate over hulls and points",
         "frame rate on the plane of M and N, the paper's choice 4×8 outlined", "sampling_hulls_curves"},
-       {"fps"},
+       {"hulls", "samples", "fps"},
        fps_map},
       {{"sampling_hulls.error", "Perceived error over the number of samples",
         "mean FLIP over M·N, with weighted quartiles, for hulls and their baselines", "sampling_hulls_curves"},
@@ -349,9 +356,16 @@ void write_figure(std::string_view name, const std::vector<json>& rows, const st
   const Figure& figure = find(name);
   check_chart_path(path);
   std::vector<Condition> all(conditions.begin(), conditions.end());
-  const bool own = std::any_of(rows.begin(), rows.end(),
-                               [&](const json& row) { return row.value("sweep", std::string()) == figure.info.spec; });
-  if (own) all.push_back({"sweep", figure.info.spec});
+  const bool chosen =
+      std::any_of(all.begin(), all.end(), [](const Condition& condition) { return condition.field == "sweep"; });
+  for (const std::string& sweep : {figure.info.spec, figure.info.spec + "_preview"}) {
+    if (chosen) break;
+    const bool there = std::any_of(rows.begin(), rows.end(),
+                                   [&](const json& row) { return row.value("sweep", std::string()) == sweep; });
+    if (!there) continue;
+    all.insert(all.begin(), {"sweep", sweep});
+    break;
+  }
   write_svg_as(figure.draw(figure.info, choose_rows(rows, all, figure.fields)), path);
 }
 

@@ -27,8 +27,8 @@ std::vector<FigureInfo> figures();
 FigureInfo find_figure(std::string_view name);
 
 /// Draws a named figure to `path` (.svg, .png or .pdf by extension; whole or not at all). It takes the rows of its own
-/// spec; when `rows` has none of them, every row it can use; `conditions`
-/// choose further. Failed rows are left out and counted in the chart's note.
+/// spec, else of that spec's preview, else every row it can use, unless `conditions` name a sweep; they choose further.
+/// Failed rows are left out and counted in the chart's note.
 /// Throws InputError for an unknown name (nearest one suggested) or extension, for rows of more than one device or
 /// driver (they are named) and when nothing is left to draw; RuntimeError when the file cannot be written or
 /// rsvg-convert is missing (PNG and PDF).

@@ -13,9 +13,9 @@ namespace pellucid::plots {
 
 /// A chart of any two fields of a store's rows.
 struct RowChart {
-  std::string x;                    ///< empty: the parameter that takes the most values
-  std::string y;                    ///< empty: fps where there is one, else flip_mean, else rmse
-  std::vector<std::string> series;  ///< settings that divide the rows into lines; empty: all that vary
+  std::string x{};                    ///< empty: the parameter that takes the most values
+  std::string y{};                    ///< empty: fps where there is one, else flip_mean, else rmse
+  std::vector<std::string> series{};  ///< settings that divide the rows into lines; empty: all that vary
   bool log_x = false, log_y = false;
   std::vector<Condition> conditions{};
   std::string title{};  ///< empty: "y over x"

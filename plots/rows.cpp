@@ -78,6 +78,10 @@ bool is_common(std::string_view setting) {
   return setting == "scene" || setting == "view" || setting == "size" || setting.find('.') != std::string_view::npos;
 }
 
+bool is_timing(const std::string& field) {
+  return field == "fps" || field.starts_with("frame_ms");
+}
+
 const ParameterTable* table_of(const std::string& technique) {
   for (const TechniqueInfo& info : techniques()) {
     if (info.name == technique) return &info.table();
@@ -120,24 +124,36 @@ Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> condi
     left = std::move(next);
   }
 
+  // A field that is a parameter of some technique does not exist for the others.
+  std::set<std::string> parameters;
+  for (const json* row : left) {
+    for (const auto& [name, value] : settings(*row))
+      parameters.insert(name);
+  }
   Rows result;
   std::set<std::string> seen;
   for (const json* row : left) {
+    std::vector<std::string> missing;
+    std::copy_if(fields.begin(), fields.end(), std::back_inserter(missing),
+                 [&](const std::string& field) { return !number(*row, field); });
+    if (std::any_of(missing.begin(), missing.end(), [&](const auto& field) { return parameters.contains(field); })) {
+      continue;
+    }
     if (row->contains("point") && !seen.insert(text_of(*row, "point")).second) continue;
     if (text_of(*row, "status") == "failed")
       ++result.failed;
-    else if (!std::all_of(fields.begin(), fields.end(), [&](const auto& field) { return number(*row, field); }))
-      ++result.incomplete;
-    else
+    else if (missing.empty())
       result.kept.push_back(row);
+    else if (text_of(*row, "timing") == "off" && std::all_of(missing.begin(), missing.end(), is_timing))
+      ++result.untimed;
+    else
+      ++result.incomplete;
   }
   if (result.kept.empty()) {
-    if (result.incomplete > 0) {
-      for (const std::string& field : fields)
-        check_field(rows, field);
-    }
-    throw InputError(fmt::format("nothing to draw: of {} rows {} failed and {} lack a number for {}", seen.size(),
-                                 result.failed, result.incomplete, fmt::join(fields, " or ")));
+    for (const std::string& field : fields)
+      check_field(rows, field);
+    throw InputError(fmt::format("nothing to draw: no row has a number for {}; {} failed, {} were not timed",
+                                 fmt::join(fields, " and "), result.failed, result.untimed));
   }
   check_one_machine(result.kept);
   result.unconverged =
@@ -164,43 +180,122 @@ std::vector<std::pair<std::string, std::string>> settings(const json& row) {
   return result;
 }
 
-std::vector<Group> group_rows(const Rows& rows, std::span<const std::string> own) {
-  const auto is_own = [&](const std::string& name) { return std::find(own.begin(), own.end(), name) != own.end(); };
-  // Values of each setting: over all techniques for what is common to them, else for each technique by itself.
-  std::map<std::string, std::set<std::string>> values;
-  const auto key = [](const std::string& technique, const std::string& name) {
-    return is_common(name) || name == "technique" ? name : technique + "\n" + name;
-  };
-  for (const json* row : rows.kept) {
-    const std::string technique = text_of(*row, "technique");
-    for (const auto& [name, value] : settings(*row))
-      values[key(technique, name)].insert(value);
-  }
-  const bool one_technique = values["technique"].size() == 1;
+namespace {
 
+/// How often each setting takes each value: over all techniques for what is common to them, else for each technique by
+/// itself. Settings that never change are left out.
+class Variation {
+ public:
+  Variation(const Rows& rows, std::span<const std::string> own) {
+    for (const json* row : rows.kept) {
+      const std::string technique = text_of(*row, "technique");
+      for (const auto& [name, value] : settings(*row)) {
+        if (name == "technique" || std::find(own.begin(), own.end(), name) != own.end()) continue;
+        Setting& setting = settings_[key(technique, name)];
+        setting.name = name;
+        auto found = std::find_if(setting.values.begin(), setting.values.end(),
+                                  [&](const auto& known) { return known.first == value; });
+        if (found == setting.values.end()) found = setting.values.insert(found, {value, 0});
+        ++found->second;
+        const auto raw = row->find(name);
+        if (raw == row->end() || !raw->is_string()) setting.in_words = false;
+      }
+    }
+    std::erase_if(settings_, [](const auto& entry) { return entry.second.values.size() < 2; });
+  }
+
+  bool varies(const std::string& technique, const std::string& name) const {
+    return settings_.contains(key(technique, name));
+  }
+  /// Whether it goes without saying: the value, a word, is the one that most rows have.
+  bool is_usual(const std::string& technique, const std::string& name, const std::string& value) const {
+    const Setting& setting = settings_.at(key(technique, name));
+    return setting.in_words && setting.usual() == value;
+  }
+  /// "coordinates automatic", each once.
+  std::vector<std::string> usual() const {
+    std::vector<std::string> result;
+    for (const auto& [place, setting] : settings_) {
+      const std::string text = setting.name + " " + setting.usual();
+      if (setting.in_words && std::find(result.begin(), result.end(), text) == result.end()) result.push_back(text);
+    }
+    return result;
+  }
+
+ private:
+  struct Setting {
+    std::string name;
+    std::vector<std::pair<std::string, std::size_t>> values;  ///< in the order of their first appearance
+    bool in_words = true;
+    const std::string& usual() const {
+      return std::max_element(values.begin(), values.end(),
+                              [](const auto& a, const auto& b) { return a.second < b.second; })
+          ->first;
+    }
+  };
+  static std::string key(const std::string& technique, const std::string& name) {
+    return is_common(name) ? name : technique + "\n" + name;
+  }
+  std::map<std::string, Setting> settings_;
+};
+
+}  // namespace
+
+std::vector<Group> group_rows(const Rows& rows, std::span<const std::string> own, Labels labels) {
+  const Variation variation(rows, own);
+  const bool by_technique = std::find(own.begin(), own.end(), "technique") == own.end();
+  const bool one_technique = std::all_of(rows.kept.begin(), rows.kept.end(), [&](const json* row) {
+    return text_of(*row, "technique") == text_of(*rows.kept.front(), "technique");
+  });
   std::vector<Group> groups;
+  std::vector<std::string> keys;  // of the groups: every setting that divides, named in the label or not
   for (const json* row : rows.kept) {
     const std::string technique = text_of(*row, "technique");
+    std::string key = by_technique ? technique : std::string();
     std::vector<std::string> parts;
     for (const auto& [name, value] : settings(*row)) {
-      if (is_own(name) || name == "technique" || values[key(technique, name)].size() < 2) continue;
+      if (!variation.varies(technique, name)) continue;
+      key += fmt::format("\n{}={}", name, value);
+      if (labels == Labels::unusual && variation.is_usual(technique, name, value)) continue;
       parts.push_back(fmt::format("{} = {}", name, value));
     }
-    if (!is_own("technique") && (!one_technique || parts.empty())) {
-      parts.insert(parts.begin(), technique_title(technique));
-    }
-    const std::string label = fmt::format("{}", fmt::join(parts, ", "));
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const Group& g) { return g.label == label && g.technique == technique; });
-    if (group == groups.end()) {
+    const auto found = std::find(keys.begin(), keys.end(), key);
+    if (found == keys.end()) {
+      if (by_technique && (!one_technique || parts.empty())) parts.insert(parts.begin(), technique_title(technique));
       const auto variant =
           std::count_if(groups.begin(), groups.end(), [&](const Group& g) { return g.technique == technique; });
-      groups.push_back({label, technique, static_cast<std::size_t>(variant), {}});
-      group = std::prev(groups.end());
+      groups.push_back(
+          {fmt::format("{}", fmt::join(parts, ", ")), technique, static_cast<std::size_t>(variant), {row}});
+      keys.push_back(key);
+    } else {
+      groups[static_cast<std::size_t>(found - keys.begin())].rows.push_back(row);
     }
-    group->rows.push_back(row);
   }
   return groups;
+}
+
+std::string usual_note(const Rows& rows, std::span<const std::string> own) {
+  const std::vector<std::string> usual = Variation(rows, own).usual();
+  return usual.empty() ? std::string() : fmt::format("Unless named: {}.", fmt::join(usual, ", "));
+}
+
+void check_distinct(const std::vector<Group>& groups, std::span<const std::string> own) {
+  for (const Group& group : groups) {
+    std::map<std::string, const json*> seen;
+    for (const json* row : group.rows) {
+      std::vector<std::string> parts;
+      for (const std::string& name : own) {
+        if (row->contains(name)) parts.push_back(fmt::format("{} = {}", name, text_of(*row, name)));
+      }
+      const std::string place = fmt::format("{}", fmt::join(parts, ", "));
+      const auto [first, fresh] = seen.try_emplace(place, row);
+      if (fresh) continue;
+      throw InputError(
+          fmt::format("'{}' was measured more than once at {} (points {} and {}), and measurements are "
+                      "never pooled; choose with --where sweep=…, block=… or point=…",
+                      group.label, place, text_of(*first->second, "point"), text_of(*row, "point")));
+    }
+  }
 }
 
 std::string provenance_note(const Rows& rows, bool timed) {
@@ -225,6 +320,7 @@ std::string provenance_note(const Rows& rows, bool timed) {
     if (count > 0) note += fmt::format("{}{} {}.", note.empty() ? "" : " ", count, count == 1 ? one : many);
   };
   add(rows.failed, "failed point left out", "failed points left out");
+  add(rows.untimed, "point measured without timing left out", "points measured without timing left out");
   add(rows.incomplete, "point without these measurements left out", "points without these measurements left out");
   if (timed) add(rows.unconverged, "frame time did not converge", "frame times did not converge");
   return note;

@@ -17,7 +17,8 @@ namespace pellucid::plots {
 struct Rows {
   std::vector<const nlohmann::json*> kept;  ///< each measurement once; points into what they were chosen from
   std::size_t failed = 0;                   ///< left out: the point failed
-  std::size_t incomplete = 0;               ///< left out: a value was not measured (timing off, no such metric)
+  std::size_t incomplete = 0;               ///< left out: a value was not measured (no such metric)
+  std::size_t untimed = 0;                  ///< left out: measured without timing
   std::size_t unconverged = 0;              ///< kept, but the frame time's interval is wider than asked for
 };
 
@@ -27,8 +28,9 @@ struct Condition {
 };
 
 /// The rows that meet every condition and have a number in each of `fields`. A point that stands in several blocks or
-/// specs counts once. Throws InputError for a field that no row has (nearest name), for a condition that no row meets
-/// (with the values there are), and for rows of more than one device or driver.
+/// specs counts once; one that lacks a parameter among `fields` is of another technique and is not counted. Throws
+/// InputError for a field that no row has (nearest name), for a condition that no row meets (with the values there
+/// are), and for rows of more than one device or driver.
 Rows choose_rows(const std::vector<nlohmann::json>& rows, std::span<const Condition> conditions,
                  std::span<const std::string> fields);
 
@@ -48,8 +50,17 @@ struct Group {
   std::vector<const nlohmann::json*> rows;
 };
 
+enum class Labels {
+  all,      ///< every setting that divides
+  unusual,  ///< only those in words that differ from what most rows have; usual_note() says what that is
+};
+
 /// Groups in the order in which they first appear. `own` names the settings that do not divide.
-std::vector<Group> group_rows(const Rows&, std::span<const std::string> own);
+std::vector<Group> group_rows(const Rows&, std::span<const std::string> own, Labels = Labels::all);
+/// "Unless named: coordinates automatic." for Labels::unusual; empty when nothing was left unsaid.
+std::string usual_note(const Rows&, std::span<const std::string> own);
+/// Throws InputError when two rows of one group agree in all of `own` too: measurements are never pooled.
+void check_distinct(const std::vector<Group>&, std::span<const std::string> own);
 
 /// What a chart's note says of where its rows come from: scene, size, device, clock if `timed`, and how many rows were
 /// left out.

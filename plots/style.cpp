@@ -31,7 +31,7 @@ Style variant(const Style& base, std::size_t n) {
   const auto own = std::find(std::begin(kMarkers), std::end(kMarkers), base.marker);
   const std::size_t first = own == std::end(kMarkers) ? 0 : static_cast<std::size_t>(own - std::begin(kMarkers));
   // Three further on, so that the first variants do not take another technique's marker.
-  return {base.color, kMarkers[(first + 3 * n) % std::size(kMarkers)], n % 2 == 1 ? Line::dotted : Line::dashed};
+  return {base.color, kMarkers[(first + 3 * n) % std::size(kMarkers)], n % 2 == 1 ? Line::dashed : Line::dotted};
 }
 
 std::string technique_title(std::string_view technique) {

@@ -161,7 +161,7 @@ void Painter::line(double x0, double y0, double x1, double y1, const Color& colo
   context_->DrawLine(static_cast<float>(x0), static_cast<float>(y0), static_cast<float>(x1), static_cast<float>(y1));
 }
 
-void Painter::marker(double x, double y, double size, const Marker& marker, const Color& color) {
+void Painter::marker(double x, double y, double size, const Marker& marker, const Color& color, bool white_rim) {
   if (marker == Marker::none) return;
   const double r = size / 2;
   if (marker == Marker::cross || marker == Marker::plus) {
@@ -185,7 +185,8 @@ void Painter::marker(double x, double y, double size, const Marker& marker, cons
     outline.push_back(static_cast<float>(y + radius * std::sin(angle)));
   }
   vtkPen* pen = context_->GetPen();
-  pen->SetColor(255, 255, 255, 255);
+  const Color rim = white_rim ? Color{255, 255, 255} : color;
+  pen->SetColor(rim.r, rim.g, rim.b, 255);
   pen->SetWidth(0.8F);
   pen->SetLineType(vtkPen::SOLID_LINE);
   context_->GetBrush()->SetColor(color.r, color.g, color.b, 255);

@@ -34,8 +34,8 @@ class Painter {
   explicit Painter(vtkContext2D* context) : context_(context) {}
   void text(double x, double y, const std::string&, const TextStyle&);
   void line(double x0, double y0, double x1, double y1, const Color&, double width, Line = Line::solid);
-  /// Filled, with a thin white rim that keeps overlapping markers apart.
-  void marker(double x, double y, double size, const Marker&, const Color&);
+  /// Filled, with a thin rim in white that keeps overlapping markers apart, or in the marker's own colour.
+  void marker(double x, double y, double size, const Marker&, const Color&, bool white_rim = true);
   void rectangle(double x, double y, double width, double height, const Color& fill);
 
  private:

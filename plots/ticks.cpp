@@ -100,6 +100,12 @@ AxisLayout binary_axis(double low, double high, int wanted) {
   return layout;
 }
 
+/// A digit times a power of ten, without an exponent.
+std::string plain_label(double value) {
+  const int exponent = static_cast<int>(std::floor(std::log10(value) + 1e-9));
+  return fmt::format("{:.{}f}", value, std::max(0, -exponent));
+}
+
 AxisLayout decimal_log_axis(double low, double high, int wanted) {
   AxisLayout layout;
   layout.scale = Scale::log10;
@@ -113,6 +119,8 @@ AxisLayout decimal_log_axis(double low, double high, int wanted) {
   }
   // With less than two whole decades 2 and 5 carry labels too, or there would be nothing to read a value from.
   const bool dense = decades_inside < 3;
+  // One notation for the whole axis: decimals where all of them are short.
+  const bool plain = layout.min > 0.9e-4 && layout.max < 2e4;
   const int stride = std::max(0, decades_inside - 1) / std::max(wanted, 1) + 1;
   for (int k = first; k <= last; ++k) {
     for (int digit = 1; digit <= 9; ++digit) {
@@ -120,7 +128,7 @@ AxisLayout decimal_log_axis(double low, double high, int wanted) {
       if (value < layout.min * (1 - 1e-12) || value > layout.max * (1 + 1e-12)) continue;
       const bool major = (digit == 1 && (k - first) % stride == 0) || (dense && (digit == 2 || digit == 5));
       if (!major && last - first > 4) continue;
-      layout.ticks.push_back({value, major ? power_label(value) : std::string()});
+      layout.ticks.push_back({value, major ? (plain ? plain_label(value) : power_label(value)) : std::string()});
     }
   }
   return layout;

@@ -1,12 +1,16 @@
 // Charts as files: well-formed, inside their frame, nothing dropped.
 #include "plots/chart.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <expat.h>
 #include <gtest/gtest.h>
@@ -94,6 +98,74 @@ TEST(Chart, RefusesWhatCannotBeDrawn) {
   negative.series[0].points[0].y = -1;
   EXPECT_NE(message([&] { to_svg(negative); }).find("first"), std::string::npos);
   EXPECT_NE(message([&] { write_chart(sample(), "chart.gif"); }).find(".svg"), std::string::npos);
+}
+
+TEST(Chart, TheLineReachesFromTheFirstPointToTheLastInsideThePlot) {
+  Chart chart = sample();
+  chart.series = {{.label = "",
+                   .points = {{1, 0.5}, {8, 0.02}, {64, 0.1}},
+                   .style = {.color = {213, 94, 0}, .marker = Marker::none}}};
+  const auto path = std::filesystem::temp_directory_path() / ("pellucid_line_" + std::to_string(::getpid()) + ".png");
+  write_chart(chart, path);
+  const Image image = read_image(path).image;
+  std::filesystem::remove(path);
+  const int zoom = image.width / chart.width_px;
+  ASSERT_GE(zoom, 1);
+  // Per column, the highest and the lowest pixel in the series' colour.
+  std::vector<std::pair<int, int>> columns(static_cast<std::size_t>(image.width), {image.height, -1});
+  int left = image.width, right = -1, top = image.height, bottom = -1;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float* p = image.at(x, y);
+      if (std::abs(p[0] - 213 / 255.0F) > 0.1F || std::abs(p[1] - 94 / 255.0F) > 0.1F || p[2] > 0.2F) continue;
+      auto& [highest, lowest] = columns[static_cast<std::size_t>(x)];
+      highest = std::min(highest, y);
+      lowest = std::max(lowest, y);
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+  }
+  ASSERT_LT(left, right) << "no line at all";
+  EXPECT_GT(left, 30 * zoom) << "right of the ordinate's labels";
+  EXPECT_LT(right, image.width - 8 * zoom);
+  EXPECT_GT(right - left, image.width / 2);
+  EXPECT_GT(bottom - top, image.height / 3);
+  EXPECT_LT(bottom, image.height - 50 * zoom) << "above the abscissa's labels";
+  for (int x = left; x <= right; ++x)
+    EXPECT_GE(columns[static_cast<std::size_t>(x)].second, 0) << "a gap at column " << x;
+  // The first point is the highest, the second, half way on a logarithmic abscissa, the lowest.
+  EXPECT_NEAR(columns[static_cast<std::size_t>(left + zoom)].first, top, 4 * zoom);
+  EXPECT_NEAR(columns[static_cast<std::size_t>((left + right) / 2)].second, bottom, 4 * zoom);
+}
+
+TEST(Chart, MoreLegendNeedsMorePageNotLessPlot) {
+  const auto height = [](const std::string& svg) {
+    const std::string mark = "viewBox=\"0 0 460 ";
+    return std::stoi(svg.substr(svg.find(mark) + mark.size()));
+  };
+  Chart chart = sample();
+  EXPECT_EQ(height(to_svg(chart)), chart.height_px);
+  for (int i = 0; i < 4; ++i) {
+    chart.series.push_back(chart.series.back());
+    chart.series.back().label = "a label that is so long that it needs a row of its own " + std::to_string(i);
+  }
+  EXPECT_EQ(height(to_svg(chart)), chart.height_px + 4 * 18);
+}
+
+TEST(Chart, PicturesNeedTheConverter) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "/nowhere", 1);
+  std::string words = "no error";
+  try {
+    write_chart(sample(), std::filesystem::temp_directory_path() / "pellucid_never.png");
+  } catch (const RuntimeError& e) {
+    words = e.what();
+  }
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(words.find("rsvg-convert"), std::string::npos) << words;
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::temp_directory_path() / "pellucid_never.png"));
 }
 
 TEST(Chart, FilesAreWhatTheirNameSays) {

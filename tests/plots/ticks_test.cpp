@@ -1,5 +1,8 @@
 #include "plots/ticks.hpp"
 
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 namespace pellucid::plots {
@@ -15,6 +18,19 @@ TEST(Ticks, LabelsReadBackAsTheirValues) {
   EXPECT_EQ(binary_label(0.25), "1/4");
   EXPECT_EQ(decimal_label(0.25, 2), "0.25");
   EXPECT_NEAR(std::stod(decimal_label(2.5e7, 0)), 2.5e7, 1e5);
+}
+
+TEST(Ticks, AnAxisHasOneNotation) {
+  const auto exponents = [](double low, double high) {
+    int with = 0, without = 0;
+    for (const Tick& tick : lay_out_axis({.label = "x", .scale = Scale::log10}, low, high, 6).ticks) {
+      if (!tick.label.empty()) ++(tick.label.find('e') == std::string::npos ? without : with);
+    }
+    return std::pair(with, without);
+  };
+  EXPECT_EQ(exponents(2e-4, 0.05).first, 0);
+  EXPECT_GE(exponents(2e-4, 0.05).second, 3);
+  EXPECT_GE(exponents(1e-9, 1e-6).first, 3);
 }
 
 TEST(Ticks, LieInARangeThatHoldsTheData) {
