@@ -95,8 +95,19 @@ void draw_all_pictures(const PaperOptions& options, const std::filesystem::path&
       fmt::print(stderr, "{}: {}: {}\n", outcome.paper->name, set.name, what);
     };
     make_folder(drawing.folder);
-    outcome.pictures.push_back(
-        {.drawn = draw_pictures(set, drawing), .folder = fmt::format("{}/pictures/{}", outcome.folder, set.name)});
+    PicturesOutcome result{.name = std::string(set.name),
+                           .title = std::string(set.title),
+                           .drawn = {},
+                           .folder = fmt::format("{}/pictures/{}", outcome.folder, set.name),
+                           .missing = {}};
+    try {
+      result.drawn = draw_pictures(set, drawing);
+    } catch (const std::exception& e) {
+      // The sweeps before it may have taken hours: the report shows them, and why this is missing.
+      result.missing = e.what();
+      fmt::print(stderr, "{}: {}: not drawn: {}\n", outcome.paper->name, set.name, e.what());
+    }
+    outcome.pictures.push_back(std::move(result));
   }
 }
 
@@ -159,6 +170,7 @@ PaperOutcome reproduce(const Paper& paper, const PaperOptions& options) {
   std::vector<std::string> command = process_arguments();
   if (!command.empty()) command.front() = "pellucid";
   outcome.command = sweeps::shell_line(command);
+  if (options.device) outcome.device_option = fmt::format(" --device {}", *options.device);
   const std::filesystem::path folder = options.folder / paper.name;
   make_folder(folder);
   Part sweeping(outcome, "sweeps");
@@ -174,6 +186,10 @@ PaperOutcome reproduce(const Paper& paper, const PaperOptions& options) {
   return outcome;
 }
 
+ordered_json text_or_null(const std::string& text) {
+  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+}
+
 ordered_json to_json(const PaperOutcome& outcome) {
   ordered_json out{{"paper", outcome.paper->name}, {"preview", outcome.preview}, {"failed", outcome.failed()}};
   for (const auto& [part, seconds] : outcome.seconds)
@@ -186,8 +202,8 @@ ordered_json to_json(const PaperOutcome& outcome) {
                              {"planned", sweep.summary.planned},
                              {"reused", sweep.summary.reused},
                              {"measured", sweep.summary.measured},
-                             {"failed", sweep.summary.failed},
-                             {"unconverged", sweep.summary.unconverged},
+                             {"failed", sweep.failed()},
+                             {"unconverged", sweep.unconverged()},
                              {"baseline_drift_max", drift ? ordered_json(*drift) : ordered_json(nullptr)},
                              {"wall_s", sweep.summary.wall_s}});
   }
@@ -196,11 +212,16 @@ ordered_json to_json(const PaperOutcome& outcome) {
     out["tables"].push_back(table.path);
   out["figures"] = ordered_json::array();
   for (const FigureOutcome& figure : outcome.figures)
-    out["figures"].push_back({{"figure", figure.name}, {"path", figure.path}, {"missing", figure.missing}});
+    out["figures"].push_back(
+        {{"figure", figure.name}, {"path", text_or_null(figure.path)}, {"missing", text_or_null(figure.missing)}});
   out["pictures"] = ordered_json::array();
   for (const PicturesOutcome& set : outcome.pictures) {
+    if (!set.missing.empty()) out["pictures"].push_back({{"set", set.name}, {"missing", set.missing}});
     for (const DrawnPicture& picture : set.drawn.pictures) {
-      ordered_json entry{{"picture", picture.name}, {"exr", set.folder + "/" + picture.exr}, {"kept", picture.kept}};
+      ordered_json entry{{"set", set.name},
+                         {"picture", picture.name},
+                         {"exr", set.folder + "/" + picture.exr},
+                         {"kept", picture.kept}};
       for (const auto& [metric, value] : picture.metrics)
         entry[metric] = value;
       out["pictures"].push_back(std::move(entry));
@@ -231,7 +252,8 @@ int reproduce_papers(const PaperOptions& options) {
   } else {
     fmt::print("{}\n", page.string());
   }
-  if (failed > 0) fmt::print(stderr, "{} points failed; {} lists them\n", failed, page.string());
+  if (failed > 0)
+    fmt::print(stderr, "{} points or sets of pictures failed; {} says which and why\n", failed, page.string());
   return failed > 0 ? kFailed : kDone;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,12 +10,16 @@
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/scene.hpp"
+#include "algorithms/technique.hpp"
+#include "gl/display.hpp"
 #include "gl/error.hpp"
+#include "plots/close_up.hpp"
 #include "sandbox/commands/arguments.hpp"
 #include "sandbox/self.hpp"
 #include "sweeps/metrics/flip.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/provenance.hpp"
+#include "sweeps/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -41,6 +46,12 @@ struct Wanted {
   std::string device;  ///< empty: any
 };
 
+// Reals are floats in a session: the file has them rounded.
+bool same(const json& a, const json& b) {
+  if (!a.is_number() || !b.is_number()) return a == b;
+  return a.get<float>() == b.get<float>();
+}
+
 // Why the file cannot stay; empty when it can.
 std::string outdated(const ImageFile& file, const Wanted& wanted) {
   const auto command = file.attributes.find("pellucid.command");
@@ -54,7 +65,7 @@ std::string outdated(const ImageFile& file, const Wanted& wanted) {
   }
   const json parameters = recipe.value("parameters", json::object());
   for (const auto& [name, value] : wanted.recipe.at("parameters").items()) {
-    if (parameters.value(name, json()) != value) return fmt::format("its {} differs", name);
+    if (!same(parameters.value(name, json()), value)) return fmt::format("its {} differs", name);
   }
   if (origin.value("scene_hash", "") != wanted.scene_hash) return "the scene has changed";
   if (origin.value("commit", "") != sweeps::kCommit) return "the program has changed";
@@ -92,31 +103,11 @@ ImageFile make(const std::filesystem::path& path, const std::vector<std::string>
   return std::move(*file);
 }
 
-Image crop(const Image& image, const Window& window) {
-  Image out(window.width, window.height, image.channels);
-  for (int y = 0; y < window.height; ++y) {
-    std::copy_n(image.at(window.x, window.y + y), window.width * image.channels, out.at(0, y));
-  }
-  return out;
-}
-
-Image enlarge(const Image& image, int factor) {
-  Image out(image.width * factor, image.height * factor, image.channels);
-  for (int y = 0; y < out.height; ++y) {
-    for (int x = 0; x < out.width; ++x)
-      std::copy_n(image.at(x / factor, y / factor), image.channels, out.at(x, y));
-  }
-  return out;
-}
-
-Image scaled(Image image, double gain) {
-  for (float& value : image.pixels)
-    value = std::min(1.0F, value * static_cast<float>(gain));
-  return image;
-}
-
-json settings_json(const PaperPicture& picture) {
+/// Every parameter of the technique as the picture has it.
+json parameters_of(const PaperPicture& picture) {
   json out = json::object();
+  for (const ParameterInfo& info : find_technique(picture.technique).table().infos())
+    out[info.name] = sweeps::value_to_json(info.default_value);
   for (const std::string_view setting : picture.settings) {
     const auto [name, text] = parse_assignment(std::string(setting));
     json value = json::parse(text, nullptr, false);
@@ -125,147 +116,169 @@ json settings_json(const PaperPicture& picture) {
   return out;
 }
 
-}  // namespace
-
-Window brightest_window(const Image& image, int width, int height) {
-  const int w = std::min(width, image.width), h = std::min(height, image.height);
-  // Sums over all rectangles from the top left corner, so that a window costs four look-ups.
-  const auto stride = static_cast<std::size_t>(image.width) + 1;
-  std::vector<double> sums(stride * (static_cast<std::size_t>(image.height) + 1));
-  auto sum = [&](int x, int y) -> double& {
-    return sums[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
-  };
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x)
-      sum(x + 1, y + 1) = static_cast<double>(*image.at(x, y)) + sum(x, y + 1) + sum(x + 1, y) - sum(x, y);
+/// One set of pictures in the making.
+class Drawing {
+ public:
+  Drawing(const PaperPictures& set, const PictureOptions& options) : set_(set), options_(options) {
+    const Scene scene = load_scene(std::string(set.scene));
+    out_.name = set.name;
+    out_.title = set.title;
+    out_.scene = set.scene;
+    out_.scene_title = scene.title;
+    out_.stand_in = scene.stand_in;
+    out_.view = scene.find_view(set.view).name;
+    out_.width = set.width;
+    out_.height = set.height;
+    out_.enlarged = kEnlarged;
+    scene_hash_ = scene.content_hash();
   }
-  Window best{0, 0, w, h};
-  double largest = -HUGE_VAL;
-  for (int y = 0; y + h <= image.height; ++y) {
-    for (int x = 0; x + w <= image.width; ++x) {
-      const double total = sum(x + w, y + h) - sum(x, y + h) - sum(x + w, y) + sum(x, y);
-      if (total <= largest) continue;
-      largest = total;
-      best.x = x;
-      best.y = y;
-    }
+
+  DrawnPictures draw() {
+    draw_reference();
+    for (const PaperPicture& recipe : set_.pictures)
+      draw_picture(recipe);
+    compare();
+    options_.say("PNG, error maps, close-ups");
+    write_plain();
+    write_close_ups();
+    return std::move(out_);
   }
-  return best;
-}
 
-DrawnPictures draw_pictures(const PaperPictures& set, const PictureOptions& options) {
-  std::filesystem::create_directories(options.folder);
-  const auto path = [&](const std::string& name) { return options.folder / name; };
-  Scene scene = load_scene(std::string(set.scene));
-  const View& view = scene.find_view(set.view);
-  DrawnPictures out;
-  out.name = set.name;
-  out.title = set.title;
-  out.scene = set.scene;
-  out.scene_title = scene.title;
-  out.stand_in = scene.stand_in;
-  out.view = view.name;
-  out.width = set.width;
-  out.height = set.height;
-  out.enlarged = kEnlarged;
+ private:
+  std::filesystem::path path(const std::string& name) const { return options_.folder / name; }
 
-  json place{{"scene", out.scene}, {"view", out.view}, {"width", out.width}, {"height", out.height}};
-  place["parameters"] = json::object();
-  Wanted wanted{.command = "reference", .recipe = place, .scene_hash = scene.content_hash(), .device = options.made_on};
-  std::vector<std::string> common{"--view", out.view, "--size", fmt::format("{}x{}", out.width, out.height)};
-  if (options.device) common.insert(common.end(), {"--device", std::to_string(*options.device)});
+  json place() const {
+    return {{"scene", out_.scene},
+            {"view", out_.view},
+            {"width", out_.width},
+            {"height", out_.height},
+            {"parameters", json::object()}};
+  }
+  void add_place(std::vector<std::string>& command, const std::string& output) const {
+    command.insert(command.end(), {"--view", out_.view, "--size", fmt::format("{}x{}", out_.width, out_.height)});
+    if (options_.device) command.insert(command.end(), {"--device", std::to_string(*options_.device)});
+    command.insert(command.end(), {"-o", path(output).string()});
+  }
 
-  // The reference takes its surfaces from the forward pass, so that the metrics see the medium alone.
-  DrawnPicture& reference = out.reference;
-  reference.name = "reference";
-  reference.settings_text = "the reference";
-  reference.exr = "reference.exr";
-  reference.png = "reference.png";
-  std::vector<std::string> command{"reference", out.scene, "--surfaces", "raster"};
-  command.insert(command.end(), common.begin(), common.end());
-  command.insert(command.end(), {"-o", path(reference.exr).string()});
-  reference.repeat = shown(command);
-  wanted.recipe["surfaces"] = "raster";
-  const std::string device = std::exchange(wanted.device, "");  // traced on the CPU
-  const ImageFile truth = make(path(reference.exr), command, wanted, options, reference);
-  wanted.device = device;
-  const json error = attribute(truth, "pellucid.reference_error");
-  out.step_error_max = error.value("step_error_max", 0.0);
-  out.step_error_mean = error.value("step_error_mean", 0.0);
-  out.unconverged_share = error.value("unconverged_share", 0.0);
+  // It takes its surfaces from the forward pass, so that the metrics see the medium alone.
+  void draw_reference() {
+    DrawnPicture& reference = out_.reference;
+    reference.name = "reference";
+    reference.settings_text = "the reference";
+    reference.exr = "reference.exr";
+    std::vector<std::string> command{"reference", out_.scene, "--surfaces", "raster"};
+    add_place(command, reference.exr);
+    reference.repeat = shown(command);
+    Wanted wanted{.command = "reference", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
+    wanted.recipe["surfaces"] = "raster";
+    truth_ = make(path(reference.exr), command, wanted, options_, reference);
+    const json error = attribute(truth_, "pellucid.reference_error");
+    out_.step_error_max = error.value("step_error_max", 0.0);
+    out_.step_error_mean = error.value("step_error_mean", 0.0);
+    out_.unconverged_share = error.value("unconverged_share", 0.0);
+  }
 
-  std::vector<ImageFile> files;
-  for (const PaperPicture& recipe : set.pictures) {
+  void draw_picture(const PaperPicture& recipe) {
     DrawnPicture picture;
     picture.name = recipe.name;
     picture.label = recipe.label;
     picture.role = recipe.role;
     picture.technique = recipe.technique;
+    picture.settings_text = recipe.technique;
     picture.exr = picture.name + ".exr";
-    picture.settings_text = picture.technique;
-    command = {"render", out.scene, "-t", picture.technique};
+    std::vector<std::string> command{"render", out_.scene, "-t", picture.technique};
     for (const std::string_view setting : recipe.settings) {
       const auto [name, value] = parse_assignment(std::string(setting));
       picture.settings_text += fmt::format(", {} {}", name, value);
       command.insert(command.end(), {"-s", std::string(setting)});
     }
-    command.insert(command.end(), common.begin(), common.end());
-    command.insert(command.end(), {"-o", path(picture.exr).string()});
+    add_place(command, picture.exr);
     picture.repeat = shown(command);
-    wanted.command = "render";
-    wanted.recipe = place;
+    Wanted wanted{.command = "render", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
     wanted.recipe["technique"] = picture.technique;
-    wanted.recipe["parameters"] = settings_json(recipe);
-    files.push_back(make(path(picture.exr), command, wanted, options, picture));
-    out.pictures.push_back(std::move(picture));
+    wanted.recipe["parameters"] = parameters_of(recipe);
+    files_.push_back(make(path(picture.exr), command, wanted, options_, picture));
+    out_.pictures.push_back(std::move(picture));
   }
 
-  options.say("error maps");
-  const sweeps::Comparison comparison(
-      truth.image, nullptr, {.metrics = sweeps::MetricSet(std::vector<std::string>{"flip", "rmse"}), .keep_map = true});
-  std::vector<Image> maps;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    DrawnPicture& picture = out.pictures[i];
-    sweeps::ComparisonResult result = comparison.compare(files[i].image);
-    for (const char* metric : {"flip_mean", "flip_max", "rmse"})
-      picture.metrics[metric] = result.at(metric);
-    maps.push_back(std::move(result.flip_map));
-    picture.map_exr = picture.name + ".flip.exr";
-    picture.repeat_map = shown({"compare", path(reference.exr).string(), path(picture.exr).string(), "-m", "flip,rmse",
-                                "--no-mask", "--map", path(picture.map_exr).string()});
-    if (picture.name == set.close_up_of) {
-      out.close_up = brightest_window(maps.back(), set.close_up_width, set.close_up_height);
-      out.close_up_of = picture.label.empty() ? picture.name : picture.label;
+  void compare() {
+    options_.say("comparing with the reference");
+    const sweeps::Comparison comparison(
+        truth_.image, nullptr,
+        {.metrics = sweeps::MetricSet(std::vector<std::string>{"flip", "rmse"}), .keep_map = true});
+    double largest = 0;
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      DrawnPicture& picture = out_.pictures[i];
+      sweeps::ComparisonResult result = comparison.compare(files_[i].image);
+      for (const char* metric : {"flip_mean", "flip_max", "rmse"})
+        picture.metrics[metric] = result.at(metric);
+      largest = std::max(largest, result.at("flip_max"));
+      if (picture.name == set_.close_up_of) {
+        out_.close_up = plots::brightest_window(result.flip_map, set_.close_up_width, set_.close_up_height);
+        out_.close_up_of = picture.label.empty() ? picture.name : picture.label;
+      }
+      ImageFile map;
+      map.image = std::move(result.flip_map);
+      picture.map_exr = picture.name + ".flip.exr";
+      write_exr(path(picture.map_exr), map, ExrPixel::single);
+      picture.repeat_map = shown({"compare", path(out_.reference.exr).string(), path(picture.exr).string(), "-m",
+                                  "flip,rmse", "--no-mask", "--map", path(picture.map_exr).string()});
+      maps_.push_back(std::move(map.image));
+    }
+    // The maps share one scale, or they could not be told apart; its end is a round number above the largest error.
+    out_.map_scale = std::clamp(std::ceil(largest * 20) / 20, 0.05, 1.0);
+  }
+
+  void write_plain() {
+    out_.reference.png = out_.reference.name + ".png";
+    write_picture(path(out_.reference.png), truth_, {});
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      DrawnPicture& picture = out_.pictures[i];
+      picture.png = picture.name + ".png";
+      write_picture(path(picture.png), files_[i], {});
+      picture.map_png = picture.name + ".flip.png";
+      for (float& value : maps_[i].pixels)
+        value = std::min(1.0F, value / static_cast<float>(out_.map_scale));
+      write_png(path(picture.map_png), sweeps::error_colors(maps_[i]));
     }
   }
-  // The maps share one scale, or they could not be compared; its end is a round number above the largest error.
-  double largest = 0;
-  for (const DrawnPicture& picture : out.pictures)
-    largest = std::max(largest, picture.metrics.at("flip_max"));
-  out.map_scale = std::min(1.0, std::ceil(largest * 20) / 20);
 
-  const auto write_pair = [&](const ImageFile& file, DrawnPicture& picture) {
-    picture.png = picture.name + ".png";
-    picture.close_png = picture.name + ".close.png";
-    write_picture(path(picture.png), file, {});
-    ImageFile close;
-    close.image = enlarge(crop(file.image, out.close_up), kEnlarged);
-    write_picture(path(picture.close_png), close, {});
-  };
-  write_pair(truth, reference);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    DrawnPicture& picture = out.pictures[i];
-    write_pair(files[i], picture);
-    ImageFile map;
-    map.image = maps[i];
-    write_exr(path(picture.map_exr), map, ExrPixel::single);
-    picture.map_png = picture.name + ".flip.png";
-    picture.close_map_png = picture.name + ".close.flip.png";
-    const Image colors = sweeps::error_colors(scaled(maps[i], 1 / out.map_scale));
-    write_png(path(picture.map_png), colors);
-    write_png(path(picture.close_map_png), enlarge(crop(colors, out.close_up), kEnlarged));
+  // Stripes are faint, so the same window is shown with its contrast stretched too, by the reference's range for all.
+  void write_close_ups() {
+    const gl::DisplayTransform display;
+    const auto window_of = [&](const ImageFile& file) {
+      Image image = plots::crop(file.image, out_.close_up);
+      display.apply(image.pixels, image.channels);
+      for (std::size_t i = 3; image.channels == 4 && i < image.pixels.size(); i += 4)
+        image.pixels[i] = 1.0F;  // a picture to look at, not to composite
+      return image;
+    };
+    const Image truth = window_of(truth_);
+    const plots::Contrast contrast = plots::contrast_for(truth);
+    const auto write = [&](const Image& window, DrawnPicture& picture) {
+      picture.close_png = picture.name + ".close.png";
+      picture.stretched_png = picture.name + ".stretched.png";
+      write_png(path(picture.close_png), plots::enlarge(window, kEnlarged));
+      write_png(path(picture.stretched_png), plots::enlarge(plots::stretch(window, contrast), kEnlarged));
+    };
+    write(truth, out_.reference);
+    for (std::size_t i = 0; i < files_.size(); ++i)
+      write(window_of(files_[i]), out_.pictures[i]);
   }
-  return out;
+
+  const PaperPictures& set_;
+  const PictureOptions& options_;
+  std::string scene_hash_;
+  DrawnPictures out_;
+  ImageFile truth_;
+  std::vector<ImageFile> files_;  // of the pictures, in their order
+  std::vector<Image> maps_;
+};
+
+}  // namespace
+
+DrawnPictures draw_pictures(const PaperPictures& set, const PictureOptions& options) {
+  return Drawing(set, options).draw();
 }
 
 }  // namespace pellucid::sandbox

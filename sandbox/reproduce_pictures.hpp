@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/scene/image.hpp"
+#include "plots/close_up.hpp"
 #include "sandbox/papers.hpp"
 
 namespace pellucid::sandbox {
@@ -20,16 +20,12 @@ struct DrawnPicture {
   std::string settings_text;  ///< "sampling_hulls, hulls 2, samples 4"
   std::string exr, png;
   std::string map_exr, map_png;           ///< FLIP against the reference; empty for the reference itself
-  std::string close_png, close_map_png;   ///< the window of the close-up, enlarged
+  std::string close_png, stretched_png;   ///< the window of the close-up, enlarged; with stretched contrast
   std::map<std::string, double> metrics;  ///< flip_mean, flip_max, rmse; empty for the reference
   std::string repeat;                     ///< a command line that draws it alone
   std::string repeat_map;                 ///< and one that compares it
   std::string device, driver, commit;     ///< of the file
   bool kept = false;                      ///< it was there already
-};
-
-struct Window {
-  int x = 0, y = 0, width = 0, height = 0;
 };
 
 struct DrawnPictures {
@@ -39,7 +35,7 @@ struct DrawnPictures {
   DrawnPicture reference;
   double step_error_max = 0, step_error_mean = 0, unconverged_share = 0;
   std::vector<DrawnPicture> pictures;  ///< in the order of the paper
-  Window close_up;
+  plots::Window close_up;
   std::string close_up_of;  ///< label or name of the picture that placed it
   int enlarged = 0;         ///< factor of the close-up
   double map_scale = 0;     ///< the FLIP that the brightest colour of the maps stands for
@@ -55,8 +51,5 @@ struct PictureOptions {
 /// Draws the pictures that the folder lacks, each in a process of its own, and everything that is derived from them. A
 /// file is kept when its recipe, scene, commit and device are those asked for.
 DrawnPictures draw_pictures(const PaperPictures&, const PictureOptions&);
-
-/// The window of that size with the largest sum of a one-channel image; the first of several.
-Window brightest_window(const Image&, int width, int height);
 
 }  // namespace pellucid::sandbox

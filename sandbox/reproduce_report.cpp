@@ -17,6 +17,8 @@ namespace {
 using nlohmann::json;
 using namespace plots;
 
+constexpr double kSteadyDrift = 0.1;  // relative; beyond it times hardly compare
+
 // The distinct values of a text field over all rows, in order of appearance: "a, b".
 std::string distinct(const PaperOutcome& outcome, const char* field) {
   std::vector<std::string> found;
@@ -27,6 +29,15 @@ std::string distinct(const PaperOutcome& outcome, const char* field) {
     }
   }
   return fmt::format("{}", fmt::join(found, ", "));
+}
+
+// A point that stands in two blocks has two rows.
+std::size_t count_points(const SweepOutcome& sweep, const char* field, const char* value) {
+  std::set<std::string> points;
+  for (const json& row : sweep.rows) {
+    if (row.value(field, "") == value) points.insert(row.value("point", ""));
+  }
+  return points.size();
 }
 
 std::string distinct_sizes(const SweepOutcome& sweep) {
@@ -62,22 +73,22 @@ Facts run_facts(const PaperOutcome& outcome) {
     if (!value.empty()) facts.pairs.emplace_back(name, value);
   };
   add("Program", fmt::format("Pellucid {}", PELLUCID_VERSION));
-  std::string commits;
-  std::set<std::string> seen;
+  std::vector<std::string> commits;
   for (const SweepOutcome& sweep : outcome.sweeps) {
     for (const json& row : sweep.rows) {
       const std::string commit =
           row.value("commit", "") + (row.value("dirty", false) ? " with uncommitted changes" : "");
-      if (!commit.empty() && seen.insert(commit).second) commits += (commits.empty() ? "" : ", ") + commit;
+      if (std::find(commits.begin(), commits.end(), commit) == commits.end()) commits.push_back(commit);
     }
   }
-  add("Commit", commits);
+  add("Commit", fmt::format("{}", fmt::join(commits, ", ")));
   add("Device", distinct(outcome, "device"));
   add("Driver", distinct(outcome, "driver"));
   add("Clock", clock_text(distinct(outcome, "clock")));
-  add("Started", outcome.started_utc);
+  add("This run", fmt::format("started {}", outcome.started_utc));
   for (const auto& [part, seconds] : outcome.seconds)
-    add(("Time for " + part).c_str(), seconds < 1 ? "less than a second" : sweeps::duration_text(seconds));
+    facts.pairs.back().second +=
+        fmt::format("; {} {}", part, seconds < 1 ? "in less than a second" : "in " + sweeps::duration_text(seconds));
   if (const auto error = largest(outcome, "reference_step_error_max")) {
     add("Reference",
         fmt::format("traced on the CPU; step error at most {:.1e} of radiance 1, {:.1e} in the mean of the worst frame",
@@ -87,24 +98,24 @@ Facts run_facts(const PaperOutcome& outcome) {
 }
 
 ReportTable sweep_table(const PaperOutcome& outcome) {
-  ReportTable table{.caption = "Sweeps", .rows = {{"", "points", "frames", "failed", "unconverged", "baseline drift"}}};
+  ReportTable table{.caption = "Sweeps",
+                    .rows = {{"", "points", "pixels", "measured in", "failed", "unconverged", "baseline drift"}}};
   for (const SweepOutcome& sweep : outcome.sweeps) {
-    std::size_t failed = 0, unconverged = 0;
+    double wall_s = 0;
     std::set<std::string> points;
     for (const json& row : sweep.rows) {
-      if (!points.insert(row.value("point", "")).second) continue;
-      failed += row.value("status", "") == "failed" ? 1 : 0;
-      unconverged += row.value("timing", "") == "unconverged" ? 1 : 0;
+      if (points.insert(row.value("point", "")).second) wall_s += row.value("wall_s", 0.0);
     }
     const auto drift = sweep.summary.baseline_drift;
     table.rows.push_back({sweep.name, fmt::format("{}", points.size()), distinct_sizes(sweep),
-                          fmt::format("{}", failed), fmt::format("{}", unconverged),
+                          sweeps::duration_text(wall_s), fmt::format("{}", sweep.failed()),
+                          fmt::format("{}", sweep.unconverged()),
                           drift ? fmt::format("{:.1f} %", 100 * *drift) : "not measured"});
     const std::string file = outcome.folder + "/" + std::filesystem::path(sweep.store).filename().string();
     table.files.push_back({sweep.name + ".db", file});
-    table.commands.push_back(
-        {fmt::format("Measure {} alone", sweep.name),
-         fmt::format("pellucid sweep run {} --store {}", sweep.name, sweeps::shell_word(sweep.store))});
+    table.commands.push_back({fmt::format("Measure {} alone", sweep.name),
+                              fmt::format("pellucid sweep run {} --store {}{}", sweep.name,
+                                          sweeps::shell_word(sweep.store), outcome.device_option)});
     table.commands.push_back({fmt::format("Print the rows of {}", sweep.name),
                               fmt::format("pellucid results {} --format csv", sweeps::shell_word(sweep.store))});
   }
@@ -160,7 +171,8 @@ std::string caption(const DrawnPictures& set, const DrawnPicture& picture) {
 ReportImage image(const std::string& folder, const DrawnPicture& picture, const std::string& path,
                   const std::string& text) {
   const std::string title = picture.label.empty() ? (picture.technique.empty() ? "Reference" : "") : picture.label;
-  return {.path = folder + "/" + path, .alt = fmt::format("{} {}", title, text), .title = title, .caption = text};
+  return {
+      .path = folder + "/" + path, .alt = title.empty() ? text : title + " " + text, .title = title, .caption = text};
 }
 
 void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
@@ -178,17 +190,20 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
     all.push_back(&picture);
   all.push_back(&set.reference);
 
-  Gallery pictures, maps, close, close_maps;
-  close.least_width_px = close_maps.least_width_px = 240;
+  Gallery pictures, maps, close, stretched;
+  close.least_width_px = stretched.least_width_px = 240;
   for (const DrawnPicture* picture : all) {
     ReportImage shown = image(folder, *picture, picture->png, caption(set, *picture));
-    if (!picture->role.empty()) shown.caption += fmt::format(" Shown as {}.", picture->role);
+    if (!picture->role.empty()) shown.caption += " " + picture->role;
     shown.files = {{"PNG", folder + "/" + picture->png}, {"EXR", folder + "/" + picture->exr}};
     shown.commands = {{"Draw it again", picture->repeat}};
     pictures.images.push_back(std::move(shown));
-    ReportImage detail = image(folder, *picture, picture->close_png, picture->settings_text);
-    detail.pixels = true;
-    close.images.push_back(std::move(detail));
+    for (const auto& [gallery, path] :
+         {std::pair{&close, picture->close_png}, std::pair{&stretched, picture->stretched_png}}) {
+      ReportImage detail = image(folder, *picture, path, picture->settings_text);
+      detail.pixels = true;
+      gallery->images.push_back(std::move(detail));
+    }
     if (picture->technique.empty()) continue;
     ReportImage map =
         image(folder, *picture, picture->map_png,
@@ -196,9 +211,6 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
     map.files = {{"PNG", folder + "/" + picture->map_png}, {"EXR", folder + "/" + picture->map_exr}};
     map.commands = {{"Compare again", picture->repeat_map}};
     maps.images.push_back(std::move(map));
-    ReportImage map_detail = image(folder, *picture, picture->close_map_png, picture->settings_text);
-    map_detail.pixels = true;
-    close_maps.images.push_back(std::move(map_detail));
   }
   section.blocks.emplace_back(std::move(pictures));
   section.blocks.emplace_back(Heading{"Where they differ from the reference"});
@@ -211,7 +223,10 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
       Paragraph{fmt::format("{}×{} pixels from ({}, {}): the window in which the error of {} is largest on average.",
                             set.close_up.width, set.close_up.height, set.close_up.x, set.close_up.y, set.close_up_of)});
   section.blocks.emplace_back(std::move(close));
-  section.blocks.emplace_back(std::move(close_maps));
+  section.blocks.emplace_back(Paragraph{
+      "The same with more contrast: one straight line through the displayed values of all, by the reference's "
+      "own range."});
+  section.blocks.emplace_back(std::move(stretched));
 }
 
 // The points that need a look: failed ones and those whose time did not settle.
@@ -237,9 +252,10 @@ ReportTable trouble_table(const PaperOutcome& outcome) {
   return table;
 }
 
-void add_paper(const PaperOutcome& outcome, Report& report) {
+void add_paper(const PaperOutcome& outcome, bool alone, Report& report) {
   const std::string id(outcome.paper->name);
-  ReportSection run{id, std::string(outcome.paper->title), {}};
+  const std::string prefix = alone ? "" : id + ": ";
+  ReportSection run{id, alone ? "What was run" : std::string(outcome.paper->title), {}};
   if (outcome.preview) {
     run.blocks.emplace_back(Paragraph{
         "A preview: fewer points, and frames and samples fewer than the paper's setting asks for. Its numbers "
@@ -247,20 +263,30 @@ void add_paper(const PaperOutcome& outcome, Report& report) {
         true});
   }
   if (outcome.failed() > 0) {
-    run.blocks.emplace_back(
-        Paragraph{fmt::format("{} points failed; they are listed at the end.", outcome.failed()), true});
+    run.blocks.emplace_back(Paragraph{
+        fmt::format("{} points or sets of pictures failed; the page says which and why.", outcome.failed()), true});
+  }
+  for (const SweepOutcome& sweep : outcome.sweeps) {
+    const double drift = sweep.summary.baseline_drift.value_or(0);
+    if (drift <= kSteadyDrift) continue;
+    run.blocks.emplace_back(Paragraph{
+        fmt::format(
+            "Times of {} are unsteady: the same point took up to {:.0f} % more or less in the course of it. Other "
+            "work on the machine does that; measure again when it is idle.",
+            sweep.name, 100 * drift),
+        true});
   }
   run.blocks.emplace_back(CommandLine{"All of this was made by", outcome.command});
   run.blocks.emplace_back(run_facts(outcome));
   run.blocks.emplace_back(sweep_table(outcome));
   report.sections.push_back(std::move(run));
 
-  ReportSection tables{id + "-tables", "Tables: ours beside the paper's", {}};
+  ReportSection tables{id + "-tables", prefix + "Tables: ours beside the paper's", {}};
   for (const TableOutcome& table : outcome.tables)
     tables.blocks.emplace_back(table_block(outcome, table));
   if (!tables.blocks.empty()) report.sections.push_back(std::move(tables));
 
-  ReportSection figures{id + "-figures", "Figures", {}};
+  ReportSection figures{id + "-figures", prefix + "Figures", {}};
   Gallery gallery{.images = {}, .least_width_px = 420};
   for (const FigureOutcome& figure : outcome.figures) {
     if (figure.path.empty()) {
@@ -269,8 +295,8 @@ void add_paper(const PaperOutcome& outcome, Report& report) {
     }
     gallery.images.push_back(
         {.path = figure.path + ".svg",
-         .alt = figure.doc,
-         .title = figure.title + ".",
+         .alt = fmt::format("{}: {}", figure.title, figure.doc),
+         .title = figure.title + ":",
          .caption = figure.doc,
          .files = {{"SVG", figure.path + ".svg"}, {"PNG", figure.path + ".png"}, {"PDF", figure.path + ".pdf"}},
          .commands = {{"Draw it again", figure.repeat}}});
@@ -279,12 +305,16 @@ void add_paper(const PaperOutcome& outcome, Report& report) {
   if (!figures.blocks.empty()) report.sections.push_back(std::move(figures));
 
   for (const PicturesOutcome& pictures : outcome.pictures) {
-    ReportSection section{id + "-" + pictures.drawn.name, pictures.drawn.title, {}};
-    add_pictures(pictures, section);
+    ReportSection section{id + "-" + pictures.name, prefix + pictures.title, {}};
+    if (pictures.missing.empty()) {
+      add_pictures(pictures, section);
+    } else {
+      section.blocks.emplace_back(Paragraph{"Not drawn: " + pictures.missing, true});
+    }
     report.sections.push_back(std::move(section));
   }
 
-  ReportSection trouble{id + "-points", "Failed and unconverged points", {}};
+  ReportSection trouble{id + "-points", prefix + "Failed and unconverged points", {}};
   ReportTable table = trouble_table(outcome);
   if (table.rows.size() > 1) {
     trouble.blocks.emplace_back(std::move(table));
@@ -296,24 +326,32 @@ void add_paper(const PaperOutcome& outcome, Report& report) {
 
 }  // namespace
 
+std::size_t SweepOutcome::failed() const {
+  return count_points(*this, "status", "failed");
+}
+
+std::size_t SweepOutcome::unconverged() const {
+  return count_points(*this, "timing", "unconverged");
+}
+
 std::size_t PaperOutcome::failed() const {
-  std::set<std::string> points;
-  for (const SweepOutcome& sweep : sweeps) {
-    for (const json& row : sweep.rows) {
-      if (row.value("status", "") == "failed") points.insert(sweep.name + row.value("point", ""));
-    }
-  }
-  return points.size();
+  std::size_t count = 0;
+  for (const SweepOutcome& sweep : sweeps)
+    count += sweep.failed();
+  for (const PicturesOutcome& set : pictures)
+    count += set.missing.empty() ? 0 : 1;
+  return count;
 }
 
 Report make_report(const std::vector<PaperOutcome>& papers) {
   Report report;
-  report.title = papers.size() == 1 ? "Reproduced: " + std::string(papers.front().paper->title) : "Papers reproduced";
+  report.title = papers.size() == 1 ? std::string(papers.front().paper->title) : "Papers, reproduced";
   report.lead =
-      "Tables, figures and pictures of the paper, measured and drawn anew, with the command that makes each of them "
-      "alone. Commands are given as from the folder where this run was started.";
+      "Reproduced by Pellucid: tables, figures and pictures, measured and drawn anew, each with the command that makes "
+      "it "
+      "alone. Commands are given as from the folder where the run was started.";
   for (const PaperOutcome& paper : papers)
-    add_paper(paper, report);
+    add_paper(paper, papers.size() == 1, report);
   return report;
 }
 

@@ -19,6 +19,9 @@ struct SweepOutcome {
   std::string store;  ///< path as a user would type it
   sweeps::SweepSummary summary;
   std::vector<nlohmann::json> rows;
+  /// Points with `status` failed, and with `timing` unconverged, whoever measured them.
+  std::size_t failed() const;
+  std::size_t unconverged() const;
 };
 
 struct TableOutcome {
@@ -34,8 +37,10 @@ struct FigureOutcome {
 };
 
 struct PicturesOutcome {
+  std::string name, title;  ///< of PaperPictures
   DrawnPictures drawn;
-  std::string folder;  ///< relative to the page
+  std::string folder;   ///< relative to the page
+  std::string missing;  ///< why there are none; empty when they are drawn
 };
 
 /// What came of one paper.
@@ -50,7 +55,8 @@ struct PaperOutcome {
   std::vector<FigureOutcome> figures;
   std::vector<PicturesOutcome> pictures;
   std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, in order
-  std::size_t failed() const;                           ///< rows
+  std::string device_option;                            ///< " --device N", or empty
+  std::size_t failed() const;                           ///< points, and sets of pictures
 };
 
 /// The page that shows them all.

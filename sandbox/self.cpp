@@ -1,6 +1,8 @@
 #include "sandbox/self.hpp"
 
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -28,7 +30,11 @@ std::string reason(std::string_view diagnostics) {
 }  // namespace
 
 std::string run_pellucid(const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{"/proc/self/exe"};
+  // By its name, which goes on record; by the kernel's link when the file has been replaced meanwhile.
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const bool there = !error && std::filesystem::exists(program, error);
+  std::vector<std::string> command{there ? program.string() : "/proc/self/exe"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   plots::ProcessResult result = plots::run_process(command);
   if (result.status == kDone) return std::move(result.output);

@@ -29,6 +29,10 @@ int reproduce(const Options& options) {
     return reproduce_file(file);
   }
   if (options.tolerance) throw InputError("--tolerance is for a file");
+  std::error_code error;
+  if (std::filesystem::is_regular_file(options.what, error)) {
+    throw InputError(fmt::format("{}: only an EXR can be made again: it knows what made it", options.what));
+  }
   return reproduce_papers({.what = options.what,
                            .folder = options.folder,
                            .device = options.device,
