@@ -164,7 +164,6 @@ class Drawing {
   void draw_reference() {
     DrawnPicture& reference = out_.reference;
     reference.name = "reference";
-    reference.settings_text = "the reference";
     reference.exr = "reference.exr";
     std::vector<std::string> command{"reference", out_.scene, "--surfaces", "raster"};
     add_place(command, reference.exr);

@@ -17,7 +17,7 @@ struct DrawnPicture {
   std::string name;
   std::string label, role;    ///< of PaperPicture
   std::string technique;      ///< empty for the reference
-  std::string settings_text;  ///< "sampling_hulls, hulls 2, samples 4"
+  std::string settings_text;  ///< "sampling_hulls, hulls 2, samples 4"; empty for the reference
   std::string exr, png;
   std::string map_exr, map_png;           ///< FLIP against the reference; empty for the reference itself
   std::string close_png, stretched_png;   ///< the window of the close-up, enlarged; with stretched contrast

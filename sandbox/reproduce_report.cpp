@@ -113,9 +113,9 @@ ReportTable sweep_table(const PaperOutcome& outcome) {
                           drift ? fmt::format("{:.1f} %", 100 * *drift) : "not measured"});
     const std::string file = outcome.folder + "/" + std::filesystem::path(sweep.store).filename().string();
     table.files.push_back({sweep.name + ".db", file});
-    table.commands.push_back({fmt::format("Measure {} alone", sweep.name),
-                              fmt::format("pellucid sweep run {} --store {}{}", sweep.name,
-                                          sweeps::shell_word(sweep.store), outcome.device_option)});
+    table.commands.push_back(
+        {fmt::format("Measure {} again, into a store of its own", sweep.name),
+         fmt::format("pellucid sweep run {0} --store {0}.db{1}", sweep.name, outcome.device_option)});
     table.commands.push_back({fmt::format("Print the rows of {}", sweep.name),
                               fmt::format("pellucid results {} --format csv", sweeps::shell_word(sweep.store))});
   }
@@ -171,8 +171,10 @@ std::string caption(const DrawnPictures& set, const DrawnPicture& picture) {
 ReportImage image(const std::string& folder, const DrawnPicture& picture, const std::string& path,
                   const std::string& text) {
   const std::string title = picture.label.empty() ? (picture.technique.empty() ? "Reference" : "") : picture.label;
-  return {
-      .path = folder + "/" + path, .alt = title.empty() ? text : title + " " + text, .title = title, .caption = text};
+  return {.path = folder + "/" + path,
+          .alt = title + (title.empty() || text.empty() ? "" : " ") + text,
+          .title = title,
+          .caption = text};
 }
 
 void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
@@ -191,7 +193,7 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
   all.push_back(&set.reference);
 
   Gallery pictures, maps, close, stretched;
-  close.least_width_px = stretched.least_width_px = 240;
+  close.least_width_px = stretched.least_width_px = 300;
   for (const DrawnPicture* picture : all) {
     ReportImage shown = image(folder, *picture, picture->png, caption(set, *picture));
     if (!picture->role.empty()) shown.caption += " " + picture->role;
@@ -258,8 +260,8 @@ void add_paper(const PaperOutcome& outcome, bool alone, Report& report) {
   ReportSection run{id, alone ? "What was run" : std::string(outcome.paper->title), {}};
   if (outcome.preview) {
     run.blocks.emplace_back(Paragraph{
-        "A preview: fewer points, and frames and samples fewer than the paper's setting asks for. Its numbers "
-        "show that all works, and roughly where they lie; the full run is the same command without --preview.",
+        "A preview: fewer points, fewer timed frames and in places smaller pictures than the full run, which is the "
+        "same command without --preview. Its numbers show that all works, and roughly where they lie.",
         true});
   }
   if (outcome.failed() > 0) {
