@@ -78,7 +78,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "error: {}\n", e.what());
     return sandbox::kBadInput;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    // fmt says only "file" when standard output takes no more.
+    const std::string words = std::ferror(stdout) != 0 ? "cannot write to standard output" : e.what();
+    fmt::print(stderr, "error: {}\n", words);
     return sandbox::kFailed;
   }
   return sandbox::kBadInput;

@@ -101,7 +101,7 @@ check_references() {
 
 # Work that is put off is written in the tracker, not in the code.
 check_words() {
-  if grep -rnwE 'T[O]DO|F[I]XME|X[X]X' "${rooms[@]}" tests bootstrap .ci CMakeLists.txt; then broken=1; fi
+  if grep -IrnwE 'T[O]DO|F[I]XME|X[X]X' "${rooms[@]}" tests bootstrap .ci CMakeLists.txt; then broken=1; fi
 }
 
 case "${1:-}" in
