@@ -134,6 +134,8 @@ int reference(const Options& options) {
     settings.progress = [](double share) { fmt::print(stderr, "\rreference {:3.0f} %", 100 * share); };
   }
 
+  ordered_json origin = provenance();
+  origin["scene_hash"] = scene.content_hash();
   SurfaceLayer surfaces;
   if (options.surfaces == "raster") {
     const gl::Context context({.device = options.device});
@@ -143,6 +145,8 @@ int reference(const Options& options) {
       session.assign_text(name, value);
     }
     surfaces = session.raster_surfaces();
+    origin["device"] = context.device().renderer;
+    origin["driver"] = context.device().version;
   } else {
     surfaces = trace_surfaces(scene, camera);
   }
@@ -161,8 +165,6 @@ int reference(const Options& options) {
       {"scene", options.scene},         {"view", camera.view.name},     {"width", size.width},
       {"height", size.height},          {"surfaces", options.surfaces}, {"tolerance", options.tolerance},
       {"max_steps", options.max_steps}, {"parameters", parameters}};
-  ordered_json origin = provenance();
-  origin["scene_hash"] = scene.content_hash();
   ImageFile file;
   file.image = result.image;
   file.layers["mask"] = result.mask;
