@@ -236,13 +236,16 @@ std::string error_figure(const FigureInfo& info, const Rows& all, const std::str
     chosen |= !others.empty();
     // Bars at one abscissa would hide each other.
     const double shift =
-        field == "flip_mean" ? 5 * (static_cast<double>(g) - (static_cast<double>(groups.size()) - 1) / 2) : 0;
+        field == "flip_mean" ? 6 * (static_cast<double>(g) - (static_cast<double>(groups.size()) - 1) / 2) : 0;
     add_technique(chart, groups[g], std::move(shown), std::move(others), g, shift);
   }
   check_series_count(chart);
   chart.note =
       joined({provenance_note(rows, false),
-              field == "flip_mean" ? "Bars: quartiles of FLIP weighted by itself, moved sideways to stay apart." : "",
+              field == "flip_mean"
+                  ? "Bars: quartiles of FLIP weighted by itself, which the mean may lie below; moved sideways to stay "
+                    "apart."
+                  : "",
               chosen ? "Joined: the best M×N of each product; faint: the others." : "",
               usual_note(rows, kBudgetSettings), zero_note(dropped)});
   if (field == "rmse") chart.note += reference_note(rows);

@@ -10,7 +10,7 @@ namespace pellucid::plots {
 namespace {
 
 /// Share of the axis that is kept free at either end of a logarithmic range, so that markers are not cut.
-constexpr double kLogPadding = 0.04;
+constexpr double kLogPadding = 0.055;
 
 double forward(Scale scale, double value) {
   switch (scale) {
