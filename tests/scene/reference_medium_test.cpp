@@ -11,44 +11,12 @@
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/procedural.hpp"
+#include "tests/scene/reference_scenes.hpp"
 
 namespace pellucid {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFloatRounding = 0x1p-23;
-
-Volume box_volume(const glm::ivec3& size, std::vector<float> density, const glm::mat4& to_world) {
-  Volume volume;
-  volume.size = size;
-  volume.density = std::move(density);
-  volume.to_world = to_world;
-  return volume;
-}
-
-glm::mat4 box_from_to(const glm::vec3& low, const glm::vec3& high) {
-  return glm::scale(glm::translate(glm::mat4(1.0F), low), high - low);
-}
-
-Camera camera_at(const glm::vec3& eye, const glm::vec3& target, int width, int height, float near_m = 0.01F) {
-  Camera camera;
-  camera.view.eye = eye;
-  camera.view.target = target;
-  camera.view.near_m = near_m;
-  camera.width = width;
-  camera.height = height;
-  return camera;
-}
-
-SurfaceLayer flat_surfaces(const Camera& camera, const glm::vec3& radiance, double distance_m) {
-  SurfaceLayer layer;
-  layer.radiance = Image(camera.width, camera.height, 3);
-  for (std::size_t i = 0; i < layer.radiance.pixels.size(); ++i) {
-    layer.radiance.pixels[i] = radiance[static_cast<int>(i % 3)];
-  }
-  layer.distance_m.assign(layer.radiance.pixels.size() / 3, distance_m);
-  return layer;
-}
+using namespace test;
 
 // Length of o + t·d, t in [begin, end], inside the box from low to high, by a way of its own.
 double length_inside(const glm::dvec3& o, const glm::dvec3& d, double begin, double end, const glm::dvec3& low,
@@ -60,26 +28,6 @@ double length_inside(const glm::dvec3& o, const glm::dvec3& d, double begin, dou
     end = std::min(end, t1);
   }
   return std::max(0.0, end - begin);
-}
-
-// Trilinear density by its definition: voxel centres at (i + 1/2)/n, clamped at the border.
-double density_at(const Volume& volume, const glm::dvec3& world) {
-  const glm::dvec3 p =
-      glm::dvec3(glm::inverse(glm::dmat4(volume.to_world)) * glm::dvec4(world, 1.0)) * glm::dvec3(volume.size) - 0.5;
-  const glm::dvec3 base = glm::floor(p), f = p - base;
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1;
-    glm::ivec3 i;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int up = (corner >> axis) & 1;
-      weight *= up == 1 ? f[axis] : 1.0 - f[axis];
-      i[axis] = std::clamp(static_cast<int>(base[axis]) + up, 0, volume.size[axis] - 1);
-    }
-    sum += weight * static_cast<double>(
-                        volume.density[static_cast<std::size_t>((i.z * volume.size.y + i.y) * volume.size.x + i.x)]);
-  }
-  return sum;
 }
 
 double depth_between(const Volume& volume, const glm::dvec3& a, const glm::dvec3& b) {
@@ -280,13 +228,6 @@ glm::dvec3 march(const Scene& scene, const glm::dvec3& o, const glm::dvec3& d, d
     return sum;
   };
   return (4.0 * at(20000) - at(10000)) / 3.0;
-}
-
-double worst(const Image& image, const glm::dvec3& expected) {
-  double error = 0;
-  for (int c = 0; c < 3; ++c)
-    error = std::max(error, std::abs(static_cast<double>(image.at(0, 0)[c]) - expected[c]));
-  return error;
 }
 
 TEST(ReferencePicture, StatedStepErrorBoundsTheTrueOneAndFallsWithTheTolerance) {
