@@ -74,6 +74,21 @@ TEST(ReferenceScattering, PointLightInConstantFogIsTheAirlightIntegral) {
   }
 }
 
+TEST(ReferenceScattering, APeakNarrowerThanAnyStepIsNotMissed) {
+  Scene scene = fog_scene();
+  scene.lights = {
+      {.name = "lamp", .kind = LightKind::point, .position = {3.3F, 1e-5F, 0}, .intensity = glm::vec3(1e-4F)}};
+  const Illumination light(scene);
+  const glm::dvec3 expected = airlight(scene, glm::dvec3(scene.lights[0].position), {0.0, 8.0}, {true}, light);
+  ReferenceOptions options;
+  options.min_steps = 1;
+  options.tolerance = 1e-2;
+  const Reference result = one_pixel(scene, {-5, 0, 0}, {6, 0, 0}, options);
+  EXPECT_GT(expected.x, 0.1) << "there is a peak";
+  EXPECT_LE(std::abs(radiance(result).x - expected.x), result.step_error_max + 1e-6);
+  EXPECT_LT(result.step_error_max, 1e-2);
+}
+
 // A plate over half of the spot's cone, as in reference_shadows_test.cpp: dark from t = 2.5 to 6.5.
 Scene half_covered_spot() {
   Scene scene = fog_scene(glm::ivec3(7, 4, 5));

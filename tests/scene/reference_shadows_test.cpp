@@ -256,6 +256,10 @@ TEST(ReferenceShadows, ThePlatesShadowOnAFloorEndsWhereGeometrySays) {
   EXPECT_FALSE(lit(0.501F));
   EXPECT_FALSE(lit(4.499F));
   EXPECT_TRUE(lit(4.501F));
+  scene.lights[0].position = {1.5F, 0.9F, 0};
+  EXPECT_TRUE(lit(2.0F)) << "the plate lies beyond the lamp";
+  scene.lights[0].position = {-0.5F, 2, 0};
+  EXPECT_FALSE(lit(2.0F));
   scene.lights[0].casts_shadow = false;
   EXPECT_TRUE(lit(2.0F));
 }
