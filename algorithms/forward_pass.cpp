@@ -80,54 +80,67 @@ void ForwardPass::upload_meshes(const Scene& scene) {
 }
 
 void ForwardPass::gather_instances(const Scene& scene) {
-  instances_.assign(scene.meshes.size(), {});
+  lambertian_.assign(scene.meshes.size(), {});
+  optical_.assign(scene.meshes.size(), {});
   visible_.clear();
-  for (const Instance& instance : scene.instances) {
-    const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
-    const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(instance.to_world)));
-    instances_[static_cast<std::size_t>(instance.mesh)].push_back(
-        {instance.to_world,
-         {normal_to_world[0], normal_to_world[1], normal_to_world[2]},
-         material.albedo * instance.tint,
-         material.emission});
-  }
+  alone_.clear();
+  for (const Instance& instance : scene.instances)
+    (optical(scene, instance) ? optical_ : lambertian_)[static_cast<std::size_t>(instance.mesh)].push_back(
+        attributes(scene, instance));
+}
+
+ForwardPass::InstanceAttributes ForwardPass::attributes(const Scene& scene, const Instance& instance) {
+  const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+  const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(instance.to_world)));
+  return {instance.to_world,
+          {normal_to_world[0], normal_to_world[1], normal_to_world[2]},
+          material.albedo * instance.tint,
+          material.emission};
+}
+
+ForwardPass::Batch ForwardPass::make_batch(std::size_t mesh, std::span<const InstanceAttributes> instances) const {
+  Batch batch;
+  batch.instance_count = static_cast<int>(instances.size());
+  batch.instances = gl::Buffer(mesh_names_[mesh] + " instances", instances);
+  batch.array = gl::VertexArray(
+      mesh_names_[mesh], meshes_[mesh].vertices, sizeof(Vertex),
+      {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 3, offsetof(Vertex, color)}},
+      &meshes_[mesh].indices);
+  const std::size_t normals = offsetof(InstanceAttributes, normal_to_world);
+  batch.array.add_instanced(batch.instances, sizeof(InstanceAttributes),
+                            {{3, 4, 0},
+                             {4, 4, sizeof(glm::vec4)},
+                             {5, 4, 2 * sizeof(glm::vec4)},
+                             {6, 4, 3 * sizeof(glm::vec4)},
+                             {7, 3, normals},
+                             {8, 3, normals + sizeof(glm::vec3)},
+                             {9, 3, normals + 2 * sizeof(glm::vec3)},
+                             {10, 3, offsetof(InstanceAttributes, albedo)},
+                             {11, 3, offsetof(InstanceAttributes, emission)}});
+  return batch;
 }
 
 // Instances outside the view are left out once for a view, not in every pass: a software rasteriser spends more on
 // their vertices than on all that is seen.
-const ForwardPass::Visible& ForwardPass::visible(const glm::mat4& world_to_clip) const {
+const ForwardPass::Visible& ForwardPass::visible(const glm::mat4& world_to_clip, Objects objects) const {
   for (const Visible& kept : visible_) {
-    if (kept.world_to_clip == world_to_clip) return kept;
+    if (kept.objects == objects && kept.world_to_clip == world_to_clip) return kept;
   }
   if (visible_.size() >= kKeptViews) visible_.erase(visible_.begin());
   Visible& out = visible_.emplace_back();
   out.world_to_clip = world_to_clip;
+  out.objects = objects;
   out.batches.resize(meshes_.size());
   std::vector<InstanceAttributes> seen;
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     seen.clear();
-    for (const InstanceAttributes& instance : instances_[m]) {
-      if (!outside(world_to_clip * instance.to_world, meshes_[m].min, meshes_[m].max)) seen.push_back(instance);
+    for (const auto* group : {&lambertian_, &optical_}) {
+      if (objects == (group == &lambertian_ ? Objects::optical : Objects::lambertian)) continue;
+      for (const InstanceAttributes& instance : (*group)[m]) {
+        if (!outside(world_to_clip * instance.to_world, meshes_[m].min, meshes_[m].max)) seen.push_back(instance);
+      }
     }
-    if (seen.empty()) continue;
-    Visible::Batch& batch = out.batches[m];
-    batch.instance_count = static_cast<int>(seen.size());
-    batch.instances = gl::Buffer(mesh_names_[m] + " instances", std::span<const InstanceAttributes>(seen));
-    batch.array = gl::VertexArray(
-        mesh_names_[m], meshes_[m].vertices, sizeof(Vertex),
-        {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 3, offsetof(Vertex, color)}},
-        &meshes_[m].indices);
-    const std::size_t normals = offsetof(InstanceAttributes, normal_to_world);
-    batch.array.add_instanced(batch.instances, sizeof(InstanceAttributes),
-                              {{3, 4, 0},
-                               {4, 4, sizeof(glm::vec4)},
-                               {5, 4, 2 * sizeof(glm::vec4)},
-                               {6, 4, 3 * sizeof(glm::vec4)},
-                               {7, 3, normals},
-                               {8, 3, normals + sizeof(glm::vec3)},
-                               {9, 3, normals + 2 * sizeof(glm::vec3)},
-                               {10, 3, offsetof(InstanceAttributes, albedo)},
-                               {11, 3, offsetof(InstanceAttributes, emission)}});
+    if (!seen.empty()) out.batches[m] = make_batch(m, seen);
   }
   return out;
 }
@@ -164,7 +177,7 @@ void ForwardPass::update_shadows(const Scene& scene, const ShadowSettings& setti
   if (!shadowed_) return;
   if (settings.refresh == ShadowRefresh::changed && shadow_revision_ == revision_) return;
   shadows_.update(scene, settings, [&](const glm::mat4& world_to_clip, const gl::Program& program) {
-    draw_geometry(world_to_clip, program);
+    draw_geometry(world_to_clip, program, Objects::all);
   });
   shadow_revision_ = revision_;
 }
@@ -195,19 +208,30 @@ void ForwardPass::upload_environment(const Scene& scene) {
     environment_.upload(texels);
     environment_.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
   }
-  gl::Defines defines;
-  if (environment_) defines.emplace_back("ENVIRONMENT_IMAGE", "1");
   if (!background_) {
     background_ = gl::Program(
         "background",
-        {"algorithms/shaders/common/fullscreen.vert.glsl", "algorithms/shaders/common/background.frag.glsl"}, defines);
+        {"algorithms/shaders/common/fullscreen.vert.glsl", "algorithms/shaders/common/background.frag.glsl"},
+        environment_defines());
   }
 }
 
-void ForwardPass::draw_visible(const glm::mat4& world_to_clip) const {
-  const Visible& seen = visible(world_to_clip);
+gl::Defines ForwardPass::environment_defines() const {
+  return environment_ ? gl::Defines{{"ENVIRONMENT_IMAGE", "1"}} : gl::Defines{};
+}
+
+void ForwardPass::bind_environment(const gl::Program& program) const {
+  program.set("radiance_scale", gradient_.scale);
+  program.set("zenith", gradient_.zenith);
+  program.set("horizon", gradient_.horizon);
+  program.set("ground", gradient_.ground);
+  if (environment_) environment_.bind(0);
+}
+
+void ForwardPass::draw_visible(const glm::mat4& world_to_clip, Objects objects) const {
+  const Visible& seen = visible(world_to_clip, objects);
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
-    const Visible::Batch& batch = seen.batches[m];
+    const Batch& batch = seen.batches[m];
     if (batch.instance_count == 0) continue;
     batch.array.bind();
     glDrawElementsInstanced(GL_TRIANGLES, meshes_[m].index_count, GL_UNSIGNED_INT, nullptr, batch.instance_count);
@@ -237,11 +261,7 @@ void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
   background_.use();
   background_.set("clip_to_world", glm::inverse(world_to_clip));
   background_.set("eye", camera.view.eye);
-  background_.set("radiance_scale", gradient_.scale);
-  background_.set("zenith", gradient_.zenith);
-  background_.set("horizon", gradient_.horizon);
-  background_.set("ground", gradient_.ground);
-  if (environment_) environment_.bind(0);
+  bind_environment(background_);
   fullscreen_.bind();
   glDrawArrays(GL_TRIANGLES, 0, 3);
 
@@ -249,7 +269,7 @@ void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
   opaque_.use();
   opaque_.set("world_to_clip", world_to_clip);
   opaque_.set("eye", camera.view.eye);
-  draw_visible(world_to_clip);
+  draw_visible(world_to_clip, Objects::lambertian);
   glDepthMask(GL_TRUE);
 }
 
@@ -257,7 +277,22 @@ void ForwardPass::draw_geometry(const Camera& camera, const gl::Program& program
   draw_geometry(camera.projection() * camera.world_to_view(), program);
 }
 
-void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Program& program) const {
+void ForwardPass::draw_instance(const Scene& scene, int instance, const glm::mat4& world_to_clip,
+                                const gl::Program& program) const {
+  const Instance& object = scene.instances[static_cast<std::size_t>(instance)];
+  const auto mesh = static_cast<std::size_t>(object.mesh);
+  auto found = alone_.find(instance);
+  if (found == alone_.end()) {
+    const InstanceAttributes one = attributes(scene, object);
+    found = alone_.emplace(instance, make_batch(mesh, {&one, 1})).first;
+  }
+  program.use();
+  program.set("world_to_clip", world_to_clip);
+  found->second.array.bind();
+  glDrawElementsInstanced(GL_TRIANGLES, meshes_[mesh].index_count, GL_UNSIGNED_INT, nullptr, 1);
+}
+
+void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Program& program, Objects objects) const {
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
@@ -267,7 +302,7 @@ void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Progra
   glClearBufferfv(GL_DEPTH, 0, &far_depth);
   program.use();
   program.set("world_to_clip", world_to_clip);
-  draw_visible(world_to_clip);
+  draw_visible(world_to_clip, objects);
 }
 
 void ForwardPass::draw_surface_points(const Camera& camera) {

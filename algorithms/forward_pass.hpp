@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,10 @@
 #include "gl/program.hpp"
 
 namespace pellucid {
+
+/// Which objects a pass draws: those that the forward pass shades, the optical ones (mirrors, metals, dielectrics), or
+/// both.
+enum class Objects { lambertian, optical, all };
 
 /// The opaque objects, the lights and the environment behind everything: what all techniques share, drawn one way.
 class ForwardPass {
@@ -25,10 +31,14 @@ class ForwardPass {
   /// shaded. A second colour attachment, if there is one, receives the distance from the eye [m].
   void draw_shaded(const Camera&, bool keep_depth) const;
 
-  /// Opaque objects only, with another fragment shader behind `opaque.vert.glsl`; sets its uniform `world_to_clip`,
-  /// clears and writes depth.
+  /// Objects alone, with another fragment shader behind `opaque.vert.glsl`; sets its uniform `world_to_clip`, clears
+  /// and writes depth.
   void draw_geometry(const Camera&, const gl::Program&) const;
-  void draw_geometry(const glm::mat4& world_to_clip, const gl::Program&) const;
+  void draw_geometry(const glm::mat4& world_to_clip, const gl::Program&, Objects = Objects::lambertian) const;
+
+  /// One object, by its index in the scene, with a program whose vertex stage takes what `opaque.vert.glsl` takes; sets
+  /// its uniform `world_to_clip`. Depth, blending and culling are as the caller has set them.
+  void draw_instance(const Scene&, int instance, const glm::mat4& world_to_clip, const gl::Program&) const;
 
   /// Opaque objects only, unshaded: albedo, distance from the eye [m], unit normal and emission into the four colour
   /// attachments of the bound framebuffer; clears and writes depth.
@@ -37,6 +47,10 @@ class ForwardPass {
   /// Draws the shadow maps of the lights that cast shadows, unless the settings allow keeping those of the last frame.
   void update_shadows(const Scene&, const ShadowSettings&);
   bool shadowed() const { return shadowed_; }
+
+  /// Binds what environment.glsl reads, the image to texture unit 0, for a program compiled with environment_defines().
+  void bind_environment(const gl::Program&) const;
+  gl::Defines environment_defines() const;
 
   /// Binds what lighting.glsl and shadows.glsl read: the lights' uniform block, and shadow maps where there are any.
   void bind_lights() const;
@@ -58,14 +72,15 @@ class ForwardPass {
     glm::vec3 normal_to_world[3];
     glm::vec3 albedo, emission;
   };
+  struct Batch {
+    gl::Buffer instances;
+    gl::VertexArray array;
+    int instance_count = 0;
+  };
   // What one camera or light sees of each mesh.
   struct Visible {
-    struct Batch {
-      gl::Buffer instances;
-      gl::VertexArray array;
-      int instance_count = 0;
-    };
     glm::mat4 world_to_clip{1.0F};
+    Objects objects = Objects::lambertian;
     std::vector<Batch> batches;
   };
   void upload_meshes(const Scene&);
@@ -73,13 +88,16 @@ class ForwardPass {
   void upload_lights(const Scene&);
   void upload_environment(const Scene&);
   void compile();
-  const Visible& visible(const glm::mat4& world_to_clip) const;
-  void draw_visible(const glm::mat4& world_to_clip) const;
+  static InstanceAttributes attributes(const Scene&, const Instance&);
+  Batch make_batch(std::size_t mesh, std::span<const InstanceAttributes>) const;
+  const Visible& visible(const glm::mat4& world_to_clip, Objects) const;
+  void draw_visible(const glm::mat4& world_to_clip, Objects) const;
 
   std::vector<Vertices> meshes_;
   std::vector<std::string> mesh_names_;
-  std::vector<std::vector<InstanceAttributes>> instances_;  // by mesh
-  mutable std::vector<Visible> visible_;                    // of the last cameras and lights, newest last
+  std::vector<std::vector<InstanceAttributes>> lambertian_, optical_;  // by mesh
+  mutable std::vector<Visible> visible_;                               // of the last cameras and lights, newest last
+  mutable std::map<int, Batch> alone_;                                 // instances drawn by themselves
   gl::Buffer lights_;
   gl::Texture environment_;
   Environment gradient_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/forward_pass.hpp"
@@ -32,6 +33,21 @@ Image flipped(const std::vector<float>& texels, int width, int height, int strid
       std::copy_n(in, channels, out);
   }
   return image;
+}
+
+// A frame that silently lacks an object is worse than none.
+void check_drawable(const Scene& scene, const TechniqueInfo& info) {
+  if (info.interfaces) return;
+  for (const Instance& instance : scene.instances) {
+    if (!optical(scene, instance)) continue;
+    std::string able;
+    for (const TechniqueInfo& other : techniques()) {
+      if (other.interfaces) able += (able.empty() ? "" : ", ") + std::string(other.name);
+    }
+    throw InputError(fmt::format(
+        "technique '{}' draws no mirrors, metals or dielectrics, and '{}' of scene '{}' is one; those that do: {}",
+        info.name, instance.name, scene.name, able.empty() ? "none" : able));
+  }
 }
 
 }  // namespace
@@ -92,6 +108,7 @@ struct RenderSession::State {
 
 RenderSession::RenderSession(Scene scene, std::string_view technique, std::string_view view, int width, int height)
     : state_(std::make_unique<State>(std::move(scene), technique)) {
+  check_drawable(state_->scene, *state_->info);
   state_->camera.view = state_->scene.find_view(view);
   resize(width, height);
 }

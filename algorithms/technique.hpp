@@ -50,6 +50,7 @@ struct TechniqueInfo {
   std::string_view doc;  ///< one line
   const ParameterTable& (*table)() = nullptr;
   std::unique_ptr<Technique> (*make)() = nullptr;
+  bool interfaces = false;  ///< draws mirrors, metals and dielectrics; the others refuse a scene that has some
 };
 
 /// Every technique, in registry.cpp's order.

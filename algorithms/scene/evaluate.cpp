@@ -211,7 +211,15 @@ void evaluate(SceneDescription& description, Affected what, double time_s, Scene
       return evaluate_forest(description, scene);
     case Part::material: {
       const MaterialDescription& from = description.materials[what.index];
-      scene.materials[what.index] = {from.name, glm::vec3(from.albedo), glm::vec3(from.emission)};
+      scene.materials[what.index] = {from.name,
+                                     glm::vec3(from.albedo),
+                                     glm::vec3(from.emission),
+                                     from.kind,
+                                     glm::vec3(from.reflectance),
+                                     glm::vec3(from.metal_n),
+                                     glm::vec3(from.metal_k),
+                                     static_cast<float>(from.ior),
+                                     glm::vec3(from.absorption)};
       return;
     }
     case Part::instance:

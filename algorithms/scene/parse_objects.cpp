@@ -12,6 +12,9 @@ namespace pellucid {
 namespace {
 
 constexpr NumberRange kSegments{3, 2048};
+constexpr NumberRange kRefractiveIndex{0.2, 5};
+constexpr NumberRange kMetalIndex{0.01, 20};
+constexpr NumberRange kExtinctionIndex{0, 50};
 
 void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, MeshDescription& mesh,
                      SceneDescription& scene) {
@@ -99,8 +102,27 @@ void parse_materials(TableReader& root, SceneDescription& scene) {
     reader.set_affected(Affected{Part::material, scene.materials.size()});
     MaterialDescription& material = scene.materials.emplace_back();
     material.name = name;
-    reader.color("albedo", material.albedo, kShare);
-    reader.color("emission", material.emission, kRadiance);
+    static constexpr SurfaceKind kKinds[] = {SurfaceKind::lambertian, SurfaceKind::mirror, SurfaceKind::metal,
+                                             SurfaceKind::dielectric};
+    material.kind = kKinds[reader.choice("kind", {"lambertian", "mirror", "metal", "dielectric"}, 0)];
+    switch (material.kind) {
+      case SurfaceKind::lambertian:
+        reader.color("albedo", material.albedo, kShare);
+        reader.color("emission", material.emission, kRadiance);
+        break;
+      case SurfaceKind::mirror:
+        reader.color("reflectance", material.reflectance, kShare);
+        break;
+      case SurfaceKind::metal:
+        reader.color("reflectance", material.reflectance, kShare);
+        reader.color("n", material.metal_n, kMetalIndex, Need::required);
+        reader.color("k", material.metal_k, kExtinctionIndex, Need::required);
+        break;
+      case SurfaceKind::dielectric:
+        reader.number("ior", material.ior, kRefractiveIndex);
+        reader.color("absorption", material.absorption, kRadiance);
+        break;
+    }
     reader.finish();
   }
 }

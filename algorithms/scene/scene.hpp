@@ -28,12 +28,24 @@ struct Mesh {
   std::vector<glm::uvec3> triangles;
 };
 
-/// Lambertian: radiance = albedo · (ambient + Σ E cos θ / π), the normal turned to the side of the
-/// triangle that the viewer sees (two-sided).
+/// How a surface answers light: optics.hpp holds the laws. Lambertian surfaces are what the forward pass shades; the
+/// others are *optical*: techniques draw them, the reference traces them.
+enum class SurfaceKind {
+  lambertian,  ///< albedo · (ambient + Σ E cos θ / π) + emission, the normal turned to the viewer's side (two-sided)
+  mirror,      ///< reflects `reflectance` of the light at every angle
+  metal,       ///< reflects by Fresnel's term with extinction, times `reflectance`
+  dielectric,  ///< bounds a solid of another index: a closed mesh, its triangles counter-clockwise from outside
+};
 struct Material {
   std::string name;
   glm::vec3 albedo{0.5F};
   glm::vec3 emission{0.0F};  ///< radiance
+  SurfaceKind kind = SurfaceKind::lambertian;
+  glm::vec3 reflectance{1.0F};
+  glm::vec3 metal_n{1.0F}, metal_k{5.0F};  ///< a metal's complex index n + ik, per channel
+  float ior = 1.5F;                        ///< η of a dielectric, relative to what surrounds it
+  glm::vec3 absorption{0.0F};  ///< of a dielectric [1/m]: e^(−absorption · path) remains (Beer–Lambert)
+  bool optical() const { return kind != SurfaceKind::lambertian; }
 };
 
 /// One placed mesh.
@@ -159,6 +171,11 @@ class Scene {
 struct SceneInfo {
   std::string name, title, description, module;  ///< module: the folder it lies in
 };
+
+/// True if `instance` has a mirror's, a metal's or a dielectric's material.
+inline bool optical(const Scene& scene, const Instance& instance) {
+  return scene.materials[static_cast<std::size_t>(instance.material)].optical();
+}
 
 /// Scenes that are embedded in the binary (`algorithms/*/scenes/*.toml`), read cheaply: for `pellucid list`.
 std::vector<SceneInfo> list_scenes();

@@ -43,6 +43,10 @@ struct MeshDescription {
 struct MaterialDescription {
   std::string name;
   glm::dvec3 albedo{0.5}, emission{0.0};
+  SurfaceKind kind = SurfaceKind::lambertian;
+  glm::dvec3 reflectance{1.0}, metal_n{1.0}, metal_k{5.0};
+  double ior = 1.5;
+  glm::dvec3 absorption{0.0};
 };
 
 struct InstanceDescription {

@@ -18,8 +18,12 @@ using nlohmann::ordered_json;
 ordered_json techniques_json() {
   ordered_json out = ordered_json::array();
   for (const TechniqueInfo& t : techniques()) {
-    out.push_back(
-        {{"name", t.name}, {"title", t.title}, {"reference", t.reference}, {"baseline", t.baseline}, {"doc", t.doc}});
+    out.push_back({{"name", t.name},
+                   {"title", t.title},
+                   {"reference", t.reference},
+                   {"baseline", t.baseline},
+                   {"interfaces", t.interfaces},
+                   {"doc", t.doc}});
   }
   return out;
 }
