@@ -68,6 +68,11 @@ struct RenderSession::State {
   ForwardPass forward;
   gl::Texture color, depth;
   gl::Framebuffer framebuffer;
+  // With supersampling: the pixels, the means of the samples above.
+  gl::Texture pixels;
+  gl::Framebuffer pixel_framebuffer;
+  gl::Program mean;
+  gl::VertexArray fullscreen{"fullscreen"};
   bool prepared = false;
   bool meshes_changed = false;
 
@@ -96,14 +101,61 @@ struct RenderSession::State {
     meshes_changed = false;
   }
 
-  void fit_target() {
-    const gl::Format format = frame.format == FrameFormat::half ? gl::Format::rgba16f : gl::Format::rgba32f;
-    if (color && color.width() == camera.width && color.height() == camera.height && color.format() == format) return;
-    color = gl::Texture::make_2d("frame colour", format, camera.width, camera.height);
-    color.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
-    depth = gl::Texture::make_2d("frame depth", gl::Format::depth32f, camera.width, camera.height);
-    framebuffer = gl::Framebuffer("frame", {&color}, &depth);
+  // The camera of the samples: as many times larger as there are samples along a pixel's side.
+  Camera sample_camera() const {
+    Camera larger = camera;
+    larger.width *= frame.supersampling;
+    larger.height *= frame.supersampling;
+    return larger;
   }
+
+  void check_size() const {
+    const Camera samples = sample_camera();
+    const int limit = gl::limits().max_texture_size;
+    if (samples.width <= limit && samples.height <= limit) return;
+    throw InputError(fmt::format("image size {}x{}{} exceeds this device's limit of {}", samples.width, samples.height,
+                                 frame.supersampling > 1 ? fmt::format(" ({}x{} at frame.supersampling = {})",
+                                                                       camera.width, camera.height, frame.supersampling)
+                                                         : "",
+                                 limit));
+  }
+
+  void fit_target() {
+    check_size();
+    const gl::Format format = frame.format == FrameFormat::half ? gl::Format::rgba16f : gl::Format::rgba32f;
+    const auto fits = [&](const gl::Texture& texture, const Camera& size) {
+      return texture && texture.width() == size.width && texture.height() == size.height && texture.format() == format;
+    };
+    const Camera samples = sample_camera();
+    if (!fits(color, samples)) {
+      color = gl::Texture::make_2d("frame colour", format, samples.width, samples.height);
+      color.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
+      depth = gl::Texture::make_2d("frame depth", gl::Format::depth32f, samples.width, samples.height);
+      framebuffer = gl::Framebuffer("frame", {&color}, &depth);
+    }
+    if (frame.supersampling > 1 && !fits(pixels, camera)) {
+      pixels = gl::Texture::make_2d("frame pixels", format, camera.width, camera.height);
+      pixels.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
+      pixel_framebuffer = gl::Framebuffer("frame pixels", {&pixels}, nullptr);
+    }
+  }
+
+  void average_samples() {
+    if (!mean) {
+      mean = gl::Program("mean of samples", {"algorithms/shaders/common/fullscreen.vert.glsl",
+                                             "algorithms/shaders/common/mean_of_samples.frag.glsl"});
+    }
+    pixel_framebuffer.bind();
+    glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
+    mean.use();
+    mean.set("samples", frame.supersampling);
+    color.bind(0);
+    fullscreen.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+  const gl::Texture& shown() const { return frame.supersampling > 1 ? pixels : color; }
 };
 
 RenderSession::RenderSession(Scene scene, std::string_view technique, std::string_view view, int width, int height)
@@ -156,13 +208,9 @@ void RenderSession::set_view(const View& view) {
 
 void RenderSession::resize(int width, int height) {
   check_image_size(width, height, "image");
-  const int limit = gl::limits().max_texture_size;
-  if (width > limit || height > limit) {
-    throw InputError("image size " + std::to_string(width) + "x" + std::to_string(height) +
-                     " exceeds this device's limit of " + std::to_string(limit));
-  }
   state_->camera.width = width;
   state_->camera.height = height;
+  state_->check_size();
 }
 
 double RenderSession::prepare() {
@@ -185,13 +233,17 @@ void RenderSession::render(gl::PassTimer& timer) {
     auto pass = timer.pass("shadow maps");
     s.forward.update_shadows(s.scene, s.shadow);
   }
-  s.technique->render(s.scene, s.camera, s.forward, Target{s.color, s.depth, s.framebuffer}, timer);
+  s.technique->render(s.scene, s.sample_camera(), s.forward, Target{s.color, s.depth, s.framebuffer}, timer);
+  if (s.frame.supersampling > 1) {
+    auto pass = timer.pass("mean of samples");
+    s.average_samples();
+  }
   timer.end_frame();
   gl::check("render", s.info->name);
 }
 
 Image RenderSession::read_color() const {
-  const gl::Texture& color = state_->color;
+  const gl::Texture& color = state_->shown();
   return flipped(color.read(), color.width(), color.height(), 4, 4);
 }
 
@@ -241,7 +293,7 @@ const TechniqueInfo& RenderSession::technique_info() const {
   return *state_->info;
 }
 const gl::Texture& RenderSession::color() const {
-  return state_->color;
+  return state_->shown();
 }
 
 std::string RenderSession::reload_shaders() {

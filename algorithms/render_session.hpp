@@ -19,11 +19,17 @@ namespace pellucid {
 enum class FrameFormat { half, single };
 struct FrameSettings {
   FrameFormat format = FrameFormat::half;
+  int supersampling = 1;
   static constexpr void parameters(auto& self, auto&& visit) {
     visit(PARAM(format), {.cite = "Imagire et al. 2007, Sec. 5",
                           .doc = "bits of a colour channel that passes blend into: 16 (half) or 32 (single)",
                           .when = Change::precompute,
                           .choices = "half|single"});
+    visit(
+        PARAM(supersampling),
+        {.range = {1, 8},
+         .cite = "Crow 1977",
+         .doc = "n: a pixel is the mean of n x n samples on a grid, for comparison with a reference of many samples"});
   }
 };
 static_assert(well_formed<FrameSettings>());
@@ -57,7 +63,7 @@ class RenderSession {
   double prepare();
   /// Draws one frame (and prepares if need be).
   void render(gl::PassTimer&);
-  Image read_color() const;  ///< RGBA, rows from the top
+  Image read_color() const;  ///< RGBA, rows from the top, one texel a pixel
   /// The surfaces of the shared forward pass, at float precision, for the reference.
   SurfaceLayer raster_surfaces();
 
