@@ -68,32 +68,33 @@ Framebuffer::Framebuffer(std::string label, std::initializer_list<const Texture*
   finish(attached);
 }
 
-Framebuffer Framebuffer::layered(std::string label, const Texture& color, const Texture* depth, int layer, int level) {
-  assert(level >= 0 && level < color.levels());
+Framebuffer Framebuffer::layered(std::string label, std::initializer_list<const Texture*> colors, const Texture* depth,
+                                 int layer, int level) {
+  const std::span<const Texture* const> attached(colors.begin(), colors.size());
+  assert(!attached.empty() && level >= 0);
   Framebuffer result;
   result.label_ = std::move(label);
   result.handle_ = Handle<delete_framebuffer>(create_framebuffer(result.label_));
-  result.width_ = std::max(1, color.width() >> level);
-  result.height_ = std::max(1, color.height() >> level);
+  const Texture& first = *attached.front();
+  result.width_ = std::max(1, first.width() >> level);
+  result.height_ = std::max(1, first.height() >> level);
   const auto attach = [&](GLenum point, const Texture& texture, int at_level) {
+    assert(at_level < texture.levels());
+    const int width = std::max(1, texture.width() >> at_level), height = std::max(1, texture.height() >> at_level);
+    if (width != result.width_ || height != result.height_)
+      throw RuntimeError(fmt::format("framebuffer '{}': '{}' is {}x{} at level {}, but '{}' is {}x{}", result.label_,
+                                     first.label(), result.width_, result.height_, level, texture.label(), width,
+                                     height));
     if (layer < 0 || texture.target() == GL_TEXTURE_2D)
       glNamedFramebufferTexture(result.id(), point, texture.id(), at_level);
     else
       glNamedFramebufferTextureLayer(result.id(), point, texture.id(), at_level, layer);
   };
-  attach(GL_COLOR_ATTACHMENT0, color, level);
-  if (depth != nullptr) {
-    // A depth buffer with mipmaps follows the colour's level; one without was made for this level.
-    const int depth_level = depth->levels() > 1 ? level : 0;
-    const int width = std::max(1, depth->width() >> depth_level), height = std::max(1, depth->height() >> depth_level);
-    if (width != result.width_ || height != result.height_)
-      throw RuntimeError(fmt::format("framebuffer '{}': '{}' is {}x{} at level {}, but '{}' is {}x{}", result.label_,
-                                     color.label(), result.width_, result.height_, level, depth->label(), width,
-                                     height));
-    attach(GL_DEPTH_ATTACHMENT, *depth, depth_level);
-  }
-  const Texture* const colors[] = {&color};
-  result.finish(colors);
+  for (std::size_t i = 0; i < attached.size(); ++i)
+    attach(color_attachment(i), *attached[i], level);
+  // A depth buffer with mipmaps follows the colours' level; one without was made for this level.
+  if (depth != nullptr) attach(GL_DEPTH_ATTACHMENT, *depth, depth->levels() > 1 ? level : 0);
+  result.finish(attached);
   return result;
 }
 

@@ -105,8 +105,12 @@ class Framebuffer {
  public:
   Framebuffer() = default;
   Framebuffer(std::string label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
-  /// One layer (or cube face) of `color`; with layer < 0 all layers, for layered rendering.
-  static Framebuffer layered(std::string label, const Texture& color, const Texture* depth, int layer, int level = 0);
+  /// One layer (or cube face) of each colour; with layer < 0 all layers, for layered rendering.
+  static Framebuffer layered(std::string label, std::initializer_list<const Texture*> colors, const Texture* depth,
+                             int layer, int level = 0);
+  static Framebuffer layered(std::string label, const Texture& color, const Texture* depth, int layer, int level = 0) {
+    return layered(std::move(label), {&color}, depth, layer, level);
+  }
 
   void bind() const;  ///< also sets the viewport to the attachments' size
   void clear_color(int attachment, const std::array<float, 4>& value) const;

@@ -72,6 +72,31 @@ TEST_F(FramebufferTest, DrawsIntoOneFaceOrAll) {
   EXPECT_EQ(cube.read(1), std::vector<float>(6, 2.0F));
 }
 
+TEST_F(FramebufferTest, DrawsSeveralColorsIntoOneLayer) {
+  const Texture cube = Texture::make_cube("cube", Format::r32f, 2);
+  const Texture other = Texture::make_cube("other cube", Format::rg32f, 2);
+  const Texture depth = Texture::make_cube("cube depth", Format::depth32f, 2);
+  cube.clear({});
+  other.clear({});
+  const Framebuffer face = Framebuffer::layered("two colours", {&cube, &other}, &depth, 4);
+  face.clear_color(0, {1, 0, 0, 0});
+  face.clear_color(1, {2, 3, 0, 0});
+  face.clear_depth(0.25F);
+  const std::vector<float> first = cube.read(), second = other.read(), depths = depth.read();
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i], i / 4 == 4 ? 1.0F : 0.0F) << i;
+    EXPECT_EQ(second[2 * i + 1], i / 4 == 4 ? 3.0F : 0.0F) << i;
+    if (i / 4 == 4) {
+      EXPECT_EQ(depths[i], 0.25F) << i;
+    }
+  }
+  const Texture small = Texture::make_cube("small cube", Format::r32f, 1);
+  const std::string message = message_of<RuntimeError>([&] {
+    Framebuffer::layered("bad layers", {&cube, &small}, nullptr, -1);
+  });
+  EXPECT_TRUE(contains(message, "'bad layers'") && contains(message, "'small cube'")) << message;
+}
+
 TEST_F(FramebufferTest, NamesWhatDoesNotFit) {
   const Texture color = Texture::make_2d("color", Format::rgba8, 4, 4);
   const Texture depth = Texture::make_2d("small depth", Format::depth32f, 2, 4);
