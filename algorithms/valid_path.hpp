@@ -18,4 +18,10 @@ inline double sample_distance(double path_length_m, double i, double count, doub
   return path_length_m * (1 - (i + offset) / count);
 }
 
+/// Eq. 3: the same for the half-way point behind the i-th point, or with i = count before the last one; held on the
+/// path.
+inline double half_way_distance(double path_length_m, double i, double count, double offset) {
+  return std::clamp(sample_distance(path_length_m, i - 0.5, count, offset), 0.0, path_length_m);
+}
+
 }  // namespace pellucid

@@ -11,7 +11,7 @@ struct Input {
   vec4 ray_opacity;
 };
 struct Output {
-  float voxel, corrected, step, path, sample_at, pad0, pad1, pad2;
+  float voxel, corrected, step, path, sample_at, half_way_behind, half_way_before, pad;
 };
 layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
 layout(std430, binding = 1) writeonly buffer Outputs { Output outputs[]; };
@@ -23,5 +23,6 @@ void main() {
   vec4 e = q.extinction_interval_step_offset;
   float path = valid_path_length(q.s_count.xyz, q.sf_i.xyz, q.ray_opacity.xyz);
   outputs[k] = Output(voxel_opacity(e.x, e.y), corrected_opacity(q.ray_opacity.w, e.z / e.y), step_opacity(e.x, e.z), path,
-                      sample_distance(path, q.sf_i.w, q.s_count.w, e.w), 0.0, 0.0, 0.0);
+                      sample_distance(path, q.sf_i.w, q.s_count.w, e.w), half_way_distance(path, q.sf_i.w, q.s_count.w, e.w),
+                      half_way_distance(path, q.sf_i.w + 1.0, q.s_count.w, e.w), 0.0);
 }

@@ -1,24 +1,31 @@
 // Variance shadow maps and anti-aliased occlusion rates.
 #include "algorithms/shadows.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "algorithms/render_session.hpp"
-#include "gl/context.hpp"
+#include "algorithms/shadow_maps.hpp"
 #include "gl/program.hpp"
+#include "tests/algorithms/rendered.hpp"
 #include "tests/algorithms/scenes.hpp"
 
 namespace pellucid {
 namespace {
 
 TEST(Shadows, ShaderFunctionsAgreeWithTheirTwins) {
-  const gl::Context context;
+  test::use_context();
   struct Input {
     float mean, mean_square, depth, min_variance, amount, before, at, after;
+  };
+  // The declared ends and the default of a setting.
+  const auto ends = [](std::string_view name) {
+    const ParameterInfo& info = *parameter_table<ShadowSettings>().find(name);
+    return std::array{static_cast<float>(info.min), static_cast<float>(std::get<double>(info.default_value)),
+                      static_cast<float>(info.max)};
   };
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -26,8 +33,14 @@ TEST(Shadows, ShaderFunctionsAgreeWithTheirTwins) {
   for (int k = 0; k < 4096; ++k) {
     const float mean = unit(random);
     const float spread = k % 5 == 0 ? 0.0F : 0.3F * unit(random);
-    inputs.push_back({mean, mean * mean + spread * spread, unit(random), k % 3 == 0 ? 0.0F : 1e-4F,
-                      0.95F * unit(random), unit(random), unit(random), unit(random)});
+    // A depth at the mean itself too, where with no variance at all the bound is 0 / 0 but for the first case.
+    const float depth = k % 17 == 0 ? mean : unit(random);
+    inputs.push_back({mean, mean * mean + spread * spread, depth, ends("min_variance")[static_cast<std::size_t>(k % 3)],
+                      k % 7 < 3 ? ends("bleeding")[static_cast<std::size_t>(k % 7)] : 0.95F * unit(random),
+                      unit(random), unit(random),
+                      k % 11 == 0   ? 0.0F
+                      : k % 11 == 1 ? 1.0F
+                                    : unit(random)});
   }
   const gl::Program program("shadow twins", {"tests/algorithms/shadows.comp.glsl"});
   const gl::Buffer in("inputs", std::span<const Input>(inputs)), out("outputs", inputs.size() * sizeof(glm::vec4));
@@ -64,7 +77,7 @@ TEST(Shadows, ChebyshevIsExactForTwoDepths) {
 
 // A plate over a floor: under its middle no light, beyond its shadow all of it, for each kind of light.
 TEST(Shadows, PlateOverAFloor) {
-  const gl::Context context;
+  test::use_context();
   for (const LightKind kind : {LightKind::directional, LightKind::spot, LightKind::point}) {
     auto frame = [&](bool shadow) {
       Scene scene;

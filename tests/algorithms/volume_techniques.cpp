@@ -3,53 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/render_session.hpp"
-#include "gl/context.hpp"
+#include "tests/algorithms/rendered.hpp"
 #include "tests/algorithms/scenes.hpp"
 
 namespace pellucid {
 namespace {
 
-struct Difference {
-  double max = 0, mean = 0;
-};
-
-Difference difference(const Image& a, const Image& b) {
-  Difference d;
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        const double e = std::abs(static_cast<double>(a.at(x, y)[c]) - static_cast<double>(b.at(x, y)[c]));
-        d.max = std::max(d.max, e);
-        d.mean += e / (3.0 * a.width * a.height);
-      }
-    }
-  }
-  return d;
-}
-
-struct Settings {
-  std::string technique = "sampling_hulls";
-  std::vector<std::pair<std::string, std::string>> values;
-  std::string view = "front";
-  int width = 120, height = 90;
-};
-
-struct Rendered {
-  Image image;
-  Reference reference;
-};
-
-// A frame and its reference over the same surfaces.
-Rendered render(Scene scene, const Settings& settings) {
-  static const gl::Context context;
-  RenderSession session(std::move(scene), settings.technique, settings.view, settings.width, settings.height);
-  for (const auto& [name, value] : settings.values)
-    session.assign_text(name, value);
-  gl::PassTimer timer;
-  session.render(timer);
-  return {session.read_color(), render_reference(session.scene(), session.camera(), session.raster_surfaces())};
-}
+using namespace test;
 
 std::string number(int n) {
   return std::to_string(n);
@@ -246,7 +206,7 @@ TEST(VolumeTechniques, PointLightInTheFog) {
 }
 
 TEST(RenderSession, RefusesWhatTheTechniqueLacks) {
-  static const gl::Context context;
+  use_context();
   Scene scene = test::fog_box({2, 2, 2}, 1.0F, 1.0F);
   scene.volume.reset();
   RenderSession session(std::move(scene), "sampling_hulls", "", 8, 8);
@@ -258,7 +218,7 @@ TEST(RenderSession, RefusesWhatTheTechniqueLacks) {
 
 // What moves between frames is drawn where it is now.
 TEST(RenderSession, ChangesOfParametersAreDrawn) {
-  static const gl::Context context;
+  use_context();
   RenderSession session(test::fog_box_with_ball({4, 4, 4}, 0.75F, 0.9F), "sampling_hulls", "front", 64, 48);
   gl::PassTimer timer;
   session.render(timer);

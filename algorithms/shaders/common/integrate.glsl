@@ -20,14 +20,13 @@ vec4 integrate_path(vec3 front, vec3 ray_local, float path_length, int samples, 
   vec3 color = vec3(0.0);
   float transmittance = 1.0;
 #ifdef FILTER_OCCLUSION
-  // Eq. 3: s^S_0 would lie half a step beyond the path, inside the object that ends it; it is held at the path's end.
-  vec4 half_way = medium_visibility(front + ray_local * min(sample_distance(path_length, -0.5, count, sample_offset), path_length));
+  vec4 half_way = medium_visibility(front + ray_local * half_way_distance(path_length, 0.0, count, sample_offset));
 #endif
   for (int i = 0; i < samples; ++i) {
     vec3 p = front + ray_local * sample_distance(path_length, float(i), count, sample_offset);
     vec4 visible = medium_visibility(p);
 #ifdef FILTER_OCCLUSION
-    vec4 next = medium_visibility(front + ray_local * max(sample_distance(path_length, float(i) + 0.5, count, sample_offset), 0.0));
+    vec4 next = medium_visibility(front + ray_local * half_way_distance(path_length, float(i) + 1.0, count, sample_offset));
     visible = filtered_occlusion(half_way, visible, next);
     half_way = next;
 #endif

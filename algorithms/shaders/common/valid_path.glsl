@@ -10,3 +10,9 @@ float valid_path_length(vec3 s_world, vec3 sf_world, vec3 ray) { return max(dot(
 float sample_distance(float path_length, float i, float count, float offset) {
   return path_length * (1.0 - (i + offset) / count);
 }
+
+// Eq. 3: the same for the half-way point behind the i-th of N points, or with i = N before the last. s^S_0 would lie half a
+// step beyond the path, inside the object that ends it: both ends are held on the path.
+float half_way_distance(float path_length, float i, float count, float offset) {
+  return clamp(sample_distance(path_length, i - 0.5, count, offset), 0.0, path_length);
+}
