@@ -16,6 +16,11 @@
 namespace pellucid {
 namespace {
 
+// A ray that leaves a surface sets out this far above it, as a share of its largest coordinate: some ten roundings of
+// the single precision in which Embree takes it. Only the neighbours of its triangle need that; the triangle itself is
+// left out by name.
+constexpr double kClearance = 1e-6;
+
 void check_embree(RTCDevice device, const char* doing) {
   const RTCError error = rtcGetDeviceError(device);
   if (error != RTC_ERROR_NONE) {
@@ -36,8 +41,8 @@ void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction,
 }
 
 // Embree finds the triangle in single precision; where the ray meets it is solved again in double.
-void refine(Hit& hit, const Mesh& mesh, const glm::dvec3& origin, const glm::dvec3& direction, const RTCRayHit& query) {
-  const glm::dmat4 to_world(hit.instance->to_world);
+void refine(Hit& hit, const Mesh& mesh, const glm::dmat4& to_world, const glm::dvec3& origin,
+            const glm::dvec3& direction, const RTCRayHit& query) {
   const auto corner = [&](int i) {
     return glm::dvec3(to_world * glm::dvec4(glm::dvec3(mesh.positions[hit.triangle[i]]), 1.0));
   };
@@ -67,13 +72,17 @@ void Geometry::Release::operator()(RTCSceneTy* scene) const {
   rtcReleaseScene(scene);
 }
 
-Geometry::Geometry(const Scene& scene) : scene_(&scene), device_(rtcNewDevice(nullptr)) {
+Geometry::Geometry(const Scene& scene, const std::function<bool(int)>& included)
+    : scene_(&scene), device_(rtcNewDevice(nullptr)) {
   if (!device_) throw RuntimeError("Embree gives no device on this machine");
   meshes_.resize(scene.meshes.size());
   root_.reset(rtcNewScene(device_.get()));
   rtcSetSceneFlags(root_.get(), RTC_SCENE_FLAG_ROBUST);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
+    to_world_.emplace_back(instance.to_world);
+    normals_.push_back(glm::transpose(glm::inverse(glm::dmat3(instance.to_world))));
+    if (included && !included(static_cast<int>(i))) continue;
     const auto mesh = static_cast<std::size_t>(instance.mesh);
     if (scene.meshes[mesh].triangles.empty()) continue;
     if (!meshes_[mesh]) meshes_[mesh] = build(scene.meshes[mesh]);
@@ -111,9 +120,10 @@ Geometry::Bvh Geometry::build(const Mesh& mesh) const {
   return result;
 }
 
-Hit Geometry::intersect(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) const {
+Hit Geometry::nearest(const glm::dvec3& embree_origin, const glm::dvec3& origin, const glm::dvec3& direction,
+                      double begin, double end, float* met_at) const {
   RTCRayHit query{};
-  set_ray(query.ray, origin, direction, begin, end);
+  set_ray(query.ray, embree_origin, direction, begin, end);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
@@ -125,12 +135,37 @@ Hit Geometry::intersect(const glm::dvec3& origin, const glm::dvec3& direction, d
 #endif
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
 
+  if (met_at != nullptr) *met_at = query.ray.tfar;
   Hit hit;
-  hit.instance = &scene_->instances[query.hit.instID[0]];
+  const std::size_t index = query.hit.instID[0];
+  hit.index = static_cast<int>(index);
+  hit.instance = &scene_->instances[index];
   const Mesh& mesh = scene_->meshes[static_cast<std::size_t>(hit.instance->mesh)];
+  hit.primitive = query.hit.primID;
   hit.triangle = mesh.triangles[query.hit.primID];
-  refine(hit, mesh, origin, direction, query);
+  refine(hit, mesh, to_world_[index], origin, direction, query);
   return hit;
+}
+
+Hit Geometry::intersect(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) const {
+  return nearest(origin, origin, direction, begin, end);
+}
+
+Hit Geometry::intersect_from(const glm::dvec3& start, const Hit& from, const glm::dvec3& face,
+                             const glm::dvec3& direction) const {
+  const glm::dvec3 size = glm::abs(start);
+  const glm::dvec3 raised = start + kClearance * std::max({size.x, size.y, size.z}) * face;
+  float begin = 0.0F, met_at = 0.0F;
+  for (;;) {
+    Hit hit =
+        nearest(raised, start, direction, static_cast<double>(begin), std::numeric_limits<double>::infinity(), &met_at);
+    if (hit.instance == nullptr) return hit;
+    if (hit.index != from.index || hit.primitive != from.primitive) {
+      hit.distance = std::max(hit.distance, 0.0);
+      return hit;
+    }
+    begin = std::nextafter(met_at, std::numeric_limits<float>::infinity());  // rounding in a large triangle
+  }
 }
 
 bool Geometry::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) const {

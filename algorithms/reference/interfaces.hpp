@@ -23,6 +23,7 @@ struct InterfaceHit {
   glm::dvec3 normal{0.0};  ///< unit, interpolated, on the side where the mesh's front is (outwards of a solid)
   glm::dvec3 face{0.0};    ///< unit, the triangle's own, on that side
   bool front = true;       ///< the ray comes from that side: from outside
+  unsigned primitive = 0;  ///< the triangle, in the instance's mesh
 
   explicit operator bool() const { return instance >= 0; }
 };
@@ -63,7 +64,8 @@ class InterfaceTracer {
   /// The nearest object along a ray; `direction` unit.
   InterfaceHit nearest(const glm::dvec3& origin, const glm::dvec3& direction) const;
   /// The same for a ray that leaves a surface at `from` (a hit of this tracer): it does not meet the surface where it
-  /// starts. `without`: this instance is not there (as an environment cube of the others sees it); −1: all are.
+  /// starts; it may leave to either side, reflected or refracted. `without`: this instance is not there (as an
+  /// environment cube of the others sees it); −1: all are.
   InterfaceHit next(const InterfaceHit& from, const glm::dvec3& direction, int without = -1) const;
   /// The same from any point, without one instance.
   InterfaceHit nearest_without(const glm::dvec3& origin, const glm::dvec3& direction, int without) const;

@@ -35,7 +35,11 @@ Reference render_reference(const Scene& scene, const Camera& camera, const Surfa
   result.image = Image(camera.width, camera.height, 4);
   result.mask = Image(camera.width, camera.height, 1);
   std::optional<Scattering> medium;
-  if (scene.volume) medium.emplace(scene, *scene.volume);
+  if (scene.volume)
+    medium.emplace(scene, *scene.volume);
+  else if (!surfaces.optical.pixels.empty())
+    result.mask = surfaces.optical;
+  result.surfaces = surfaces.statistics;
   const glm::dvec3 eye(camera.view.eye);
   const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.view.target) - eye);
   tbb::combinable<Errors> errors;
@@ -66,7 +70,7 @@ Reference render_reference(const Scene& scene, const Camera& camera, const Surfa
           pixel_error = std::max(pixel_error, std::abs(static_cast<double>(pixel[c]) - radiance));
         }
         pixel[3] = static_cast<float>(light.transmittance);
-        *result.mask.at(x, y) = inside_volume ? 1.0F : 0.0F;
+        if (medium) *result.mask.at(x, y) = inside_volume ? 1.0F : 0.0F;
         // What remains when the steps are exact is the rounding to the image's 32 bits.
         pixel_error += light.step_error;
         error.max = std::max(error.max, pixel_error);

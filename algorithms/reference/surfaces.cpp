@@ -1,54 +1,28 @@
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 
+#include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
+#include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
 #include "algorithms/reference/geometry.hpp"
+#include "algorithms/reference/pixel_samples.hpp"
+#include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
+#include "algorithms/reference/surface_point.hpp"
+#include "gl/error.hpp"
 
 namespace pellucid {
 namespace {
 
-glm::dvec3 interpolate(const std::vector<glm::vec3>& values, const Hit& hit) {
-  return hit.weights.x * glm::dvec3(values[hit.triangle.x]) + hit.weights.y * glm::dvec3(values[hit.triangle.y]) +
-         hit.weights.z * glm::dvec3(values[hit.triangle.z]);
-}
-
-// What is seen at a pixel, ready to be lit.
-struct SurfacePoint {
-  glm::dvec3 position{0.0};
-  glm::dvec3 normal{0.0};  // unit, turned to the viewer
-  glm::dvec3 albedo{0.0}, emission{0.0};
-  double distance = 0.0;  // from the eye
-};
-
-SurfacePoint surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& origin, const glm::dvec3& direction) {
-  const Instance& instance = *hit.instance;
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-  const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
-  SurfacePoint point;
-  point.distance = hit.distance;
-  point.position = origin + hit.distance * direction;
-  const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(glm::dmat3(instance.to_world)));
-  point.normal = glm::normalize(normal_to_world * interpolate(mesh.normals, hit));
-  // Two-sided: the triangle's own normal tells which side is seen; at a smooth silhouette the interpolated one may not.
-  const auto corner = [&](glm::length_t i) { return glm::dvec3(mesh.positions[hit.triangle[i]]); };
-  glm::dvec3 geometric = normal_to_world * glm::cross(corner(1) - corner(0), corner(2) - corner(0));
-  if (glm::dot(geometric, direction) > 0.0) geometric = -geometric;
-  if (glm::dot(point.normal, geometric) < 0.0) point.normal = -point.normal;
-  point.albedo = glm::dvec3(material.albedo) * glm::dvec3(instance.tint);
-  if (!mesh.colors.empty()) point.albedo *= interpolate(mesh.colors, hit);
-  point.emission = glm::dvec3(material.emission);
-  return point;
-}
-
-// Lights a point with exact shadows. `geometry` null: no light casts one.
-glm::dvec3 shade(const Illumination& light, const Geometry* geometry, const SurfacePoint& point) {
+// Lights a point with exact shadows; `rays` counts them. `geometry` null: no light casts one.
+glm::dvec3 shade(const Illumination& light, const Geometry* geometry, const SurfacePoint& point, std::uint64_t& rays) {
   // Embree's ray starts at the position rounded to single precision, and a raster position errs by as much again, so
   // it sets out this far above the surface: some hundred roundings of the coordinates that went into it.
   const glm::dvec3 size = glm::abs(point.position);
@@ -56,8 +30,9 @@ glm::dvec3 shade(const Illumination& light, const Geometry* geometry, const Surf
   const glm::dvec3 start = point.position + clearance * point.normal;
   return light.surface_radiance(point.position, point.normal, point.albedo, point.emission,
                                 [&](std::size_t index, const Incidence& in) {
-                                  return geometry == nullptr || !light.casts_shadow(index) ||
-                                         !geometry->occluded(start, in.to_light, 0.0, in.distance * (1.0 - 1e-6));
+                                  if (geometry == nullptr || !light.casts_shadow(index)) return true;
+                                  ++rays;
+                                  return !geometry->occluded(start, in.to_light, 0.0, in.distance * (1.0 - 1e-6));
                                 });
 }
 
@@ -74,39 +49,159 @@ std::size_t pixel_index(const Camera& camera, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
 }
 
-// Calls visit(x, y, direction through the pixel's centre) for all pixels, in parallel.
+// Calls visit(x, y) for all pixels, in parallel. The tiles are small, since few of them may hold all the glass.
 template <class F>
 void for_pixels(const Camera& camera, F visit) {
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, camera.height, 16, 0, camera.width, 64), [&](const auto& tile) {
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, camera.height, 8, 0, camera.width, 16), [&](const auto& tile) {
     for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
       for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
-        visit(x, y, camera.ray_direction(x + 0.5, y + 0.5));
+        visit(x, y);
     }
   });
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Mean and spread of a pixel's samples (Welford).
+class Mean {
+ public:
+  void add(const glm::dvec3& value) {
+    ++count_;
+    const glm::dvec3 off = value - mean_;
+    mean_ += off / static_cast<double>(count_);
+    squares_ += off * (value - mean_);
+  }
+  const glm::dvec3& value() const { return mean_; }
+  /// In the worst channel.
+  double standard_error() const {
+    if (count_ < 2) return 0.0;
+    return std::sqrt(worst(squares_) / (static_cast<double>(count_ - 1) * static_cast<double>(count_)));
+  }
+
+ private:
+  int count_ = 0;
+  glm::dvec3 mean_{0.0}, squares_{0.0};
+};
+
+// What each thread adds up.
+struct Sums {
+  TreeTally tally;
+  double cut_max = 0.0;
+  double error_max = 0.0, error_sum = 0.0;
+  RayTree::Scratch scratch;
+};
+
+void check_traceable(const Scene& scene, const SurfaceOptions& options) {
+  if (!scene.volume) return;
+  if (has_interfaces(scene)) {
+    throw InputError(
+        fmt::format("scene '{}' has a volume, and mirrors, metals or dielectrics: the reference does not trace a "
+                    "medium behind them",
+                    scene.name));
+  }
+  if (options.samples > 1) {
+    throw InputError(fmt::format("{} samples a pixel: the medium of scene '{}' is integrated through its centre alone",
+                                 options.samples, scene.name));
+  }
+}
+
 }  // namespace
 
-SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera) {
-  assert(camera.width > 0 && camera.height > 0);
+bool has_interfaces(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(),
+                     [&](const Instance& instance) { return optical(scene, instance); });
+}
+
+SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const SurfaceOptions& options) {
+  assert(camera.width > 0 && camera.height > 0 && options.samples > 0);
+  assert(options.reflections >= 0 && options.depth >= 0 && options.cut >= 0.0);
+  check_traceable(scene, options);
+  const auto build_start = std::chrono::steady_clock::now();
   const Geometry geometry(scene);
   const Illumination light(scene);
+  const RayTree tree(scene, geometry);
   SurfaceLayer layer;
-  layer.radiance = Image(camera.width, camera.height, 3);
-  layer.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-  const glm::dvec3 origin(camera.view.eye);
-  const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.view.target) - origin);
+  SurfaceStatistics& statistics = layer.statistics;
+  statistics.samples = options.samples;
+  statistics.build_s = seconds_since(build_start);
 
-  for_pixels(camera, [&](int x, int y, const glm::dvec3& direction) {
+  layer.radiance = Image(camera.width, camera.height, 3);
+  layer.optical = Image(camera.width, camera.height, 1);
+  layer.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  TreeLimits limits;
+  limits.reflections = options.reflections;
+  limits.depth = options.depth;
+  limits.cut = options.cut;
+  limits.entry_reflection = options.entry_reflection;
+  limits.both_sides = options.both_sides;
+  const PixelSamples places(options.samples, options.seed);
+  TreeRay eye;
+  eye.origin = glm::dvec3(camera.view.eye);
+  eye.inside = tree.solids_at(eye.origin);
+  const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.view.target) - eye.origin);
+  const auto through = [&](double x, double y) {
+    TreeRay ray = eye;
+    ray.direction = camera.ray_direction(x, y);
     // The clipping planes are at constant view depth.
-    const double per_depth = 1.0 / glm::dot(direction, forward);
-    const Hit hit = geometry.intersect(origin, direction, static_cast<double>(camera.view.near_m) * per_depth,
-                                       static_cast<double>(camera.view.far_m) * per_depth);
-    write(layer.radiance.at(x, y), hit.instance != nullptr
-                                       ? shade(light, &geometry, surface_at(scene, hit, origin, direction))
-                                       : glm::dvec3(scene.environment.radiance(glm::vec3(direction))));
-    layer.distance_m[pixel_index(camera, x, y)] = hit.distance;
+    const double per_depth = 1.0 / glm::dot(ray.direction, forward);
+    ray.begin = static_cast<double>(camera.view.near_m) * per_depth;
+    ray.end = static_cast<double>(camera.view.far_m) * per_depth;
+    return ray;
+  };
+
+  const auto trace_start = std::chrono::steady_clock::now();
+  tbb::combinable<Sums> sums;
+  for_pixels(camera, [&](int x, int y) {
+    Sums& sum = sums.local();
+    Mean radiance;
+    TreeTally tally;
+    int met_optical = 0;
+    double distance_m = 0.0;
+    for (int s = 0; s < options.samples; ++s) {
+      const glm::dvec2 place = places.at(x, y, s);
+      glm::dvec3 sample(0.0);
+      const Hit first = tree.trace(
+          through(x + place.x, y + place.y), limits, sum.scratch, tally,
+          [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
+            sample += weight * shade(light, &geometry, point, tally.rays);
+          },
+          [&](const glm::dvec3& direction, const glm::dvec3& weight) {
+            sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
+          });
+      radiance.add(sample);
+      distance_m = first.distance;
+      if (first.instance != nullptr && optical(scene, *first.instance)) ++met_optical;
+    }
+    if (options.samples > 1) {
+      const TreeRay centre = through(x + 0.5, y + 0.5);
+      ++tally.rays;
+      distance_m = geometry.intersect(centre.origin, centre.direction, centre.begin, centre.end).distance;
+    }
+    write(layer.radiance.at(x, y), radiance.value());
+    *layer.optical.at(x, y) = static_cast<float>(met_optical) / static_cast<float>(options.samples);
+    layer.distance_m[pixel_index(camera, x, y)] = distance_m;
+    sum.tally.add(tally);
+    sum.cut_max = std::max(sum.cut_max, tally.cut_weight / options.samples);
+    sum.error_max = std::max(sum.error_max, radiance.standard_error());
+    sum.error_sum += radiance.standard_error();
   });
+  statistics.trace_s = seconds_since(trace_start);
+
+  const double pixels = static_cast<double>(layer.distance_m.size());
+  TreeTally all;
+  sums.combine_each([&](const Sums& sum) {
+    all.add(sum.tally);
+    statistics.cut_weight_max = std::max(statistics.cut_weight_max, sum.cut_max);
+    statistics.standard_error_max = std::max(statistics.standard_error_max, sum.error_max);
+    statistics.standard_error_mean += sum.error_sum / pixels;
+  });
+  const double rays_from_eye = pixels * options.samples;
+  statistics.cut_weight_mean = all.cut_weight / rays_from_eye;
+  statistics.limited_weight_mean = all.limited_weight / rays_from_eye;
+  statistics.lost_weight_mean = all.lost_weight / rays_from_eye;
+  statistics.rays = all.rays;
   return layer;
 }
 
@@ -114,6 +209,12 @@ SurfaceLayer shade_surfaces(const Scene& scene, const Camera& camera, const Surf
   assert(points.distance_m.size() == static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   for ([[maybe_unused]] const Image* image : {&points.albedo, &points.normal, &points.emission})
     assert(image->width == camera.width && image->height == camera.height && image->channels >= 3);
+  if (has_interfaces(scene)) {
+    throw InputError(fmt::format(
+        "the raster pass does not draw the mirrors, metals or dielectrics of scene '{}': take the reference's surfaces "
+        "from rays",
+        scene.name));
+  }
 
   const Illumination light(scene);
   std::optional<Geometry> geometry;
@@ -124,7 +225,8 @@ SurfaceLayer shade_surfaces(const Scene& scene, const Camera& camera, const Surf
   layer.radiance = Image(camera.width, camera.height, 3);
   layer.distance_m = points.distance_m;
   const glm::dvec3 origin(camera.view.eye);
-  for_pixels(camera, [&](int x, int y, const glm::dvec3& direction) {
+  for_pixels(camera, [&](int x, int y) {
+    const glm::dvec3 direction = camera.ray_direction(x + 0.5, y + 0.5);
     SurfacePoint point;
     point.distance = points.distance_m[pixel_index(camera, x, y)];
     if (std::isinf(point.distance)) {
@@ -135,7 +237,8 @@ SurfaceLayer shade_surfaces(const Scene& scene, const Camera& camera, const Surf
     point.normal = read(points.normal.at(x, y));
     point.albedo = read(points.albedo.at(x, y));
     point.emission = read(points.emission.at(x, y));
-    write(layer.radiance.at(x, y), shade(light, geometry ? &*geometry : nullptr, point));
+    std::uint64_t rays = 0;
+    write(layer.radiance.at(x, y), shade(light, geometry ? &*geometry : nullptr, point, rays));
   });
   return layer;
 }
