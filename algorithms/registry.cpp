@@ -6,6 +6,7 @@
 
 #include "algorithms/ray_marching/ray_marching.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
+#include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
 #include "algorithms/technique.hpp"
 #include "algorithms/volume_slices/volume_slices.hpp"
 
@@ -19,6 +20,9 @@ static const std::array kTechniques{
     TechniqueInfo{"ray_marching", "Ray marching", "kruger2003", true,
                   "the volume in one pass, N points on each ray, with interleaved jitter if wanted",
                   ray_marching::table, ray_marching::make},
+    TechniqueInfo{"screen_space_refraction", "Screen-space refraction", "wyman2005", true,
+                  "refraction at two interfaces, the far side as the screen shows it", screen_space_refraction::table,
+                  screen_space_refraction::make, true},
     TechniqueInfo{"volume_slices", "Slices", "cullip1994", true,
                   "the slice-based baseline: one plane a step, blended back to front", volume_slices::table,
                   volume_slices::make},
