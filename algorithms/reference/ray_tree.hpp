@@ -61,6 +61,7 @@ struct TreeRay {
   glm::dvec3 origin{0.0}, direction{0.0};
   double begin = 0.0, end = std::numeric_limits<double>::infinity();  ///< of the root's own segment
   Solids inside;
+  int only_first = -1;  ///< an instance: nothing is followed or called if the ray meets anything else before it
 };
 
 class RayTree {
@@ -113,7 +114,10 @@ Hit RayTree::trace(const TreeRay& root, const TreeLimits& limits, Scratch& scrat
     ++tally.rays;
     const Hit hit = at_root ? geometry_->intersect(current.start, current.direction, root.begin, root.end)
                             : geometry_->intersect_from(current.start, current.from, current.face, current.direction);
-    if (at_root) first = hit;
+    if (at_root) {
+      first = hit;
+      if (root.only_first >= 0 && hit.index != root.only_first) return first;
+    }
     if (!current.inside.empty()) current.weight *= absorbed(current, hit.distance);
     if (hit.instance == nullptr) {
       if (!current.inside.empty()) tally.lost_weight += worst(current.weight);

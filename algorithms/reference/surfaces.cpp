@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,6 +12,9 @@
 #include <tbb/parallel_for.h>
 
 #include "algorithms/reference/geometry.hpp"
+#include "algorithms/reference/photon_map.hpp"
+#include "algorithms/reference/photon_source.hpp"
+#include "algorithms/reference/photons.hpp"
 #include "algorithms/reference/pixel_samples.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"
@@ -90,8 +94,31 @@ struct Sums {
   TreeTally tally;
   double cut_max = 0.0;
   double error_max = 0.0, error_sum = 0.0;
+  double caustic_max = 0.0, caustic_sum = 0.0;
   RayTree::Scratch scratch;
 };
+
+// The share of the largest optical object's radius over which photons are spread without another radius given.
+constexpr double kCausticRadius = 0.01;
+
+// Photons for the light that surfaces get through objects; none when nothing sends or bends light.
+std::optional<PhotonMap> trace_caustics(const Scene& scene, const SurfaceOptions& options) {
+  double radius_m = options.caustic_radius_m;
+  if (radius_m <= 0.0) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+      if (!optical(scene, scene.instances[i])) continue;
+      radius_m = std::max(radius_m, kCausticRadius * bounding_sphere(scene, static_cast<int>(i)).radius);
+    }
+  }
+  PhotonOptions photons;
+  photons.photons = options.photons;
+  photons.seed = options.seed;
+  photons.reflections = options.reflections;
+  photons.depth = options.depth;
+  Photons landed = trace_photons(scene, {}, photons, true);
+  if (landed.deposits.empty()) return std::nullopt;
+  return PhotonMap(std::move(landed.deposits), radius_m);
+}
 
 void check_traceable(const Scene& scene, const SurfaceOptions& options) {
   if (!scene.volume) return;
@@ -126,6 +153,12 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   SurfaceStatistics& statistics = layer.statistics;
   statistics.samples = options.samples;
   statistics.build_s = seconds_since(build_start);
+  std::optional<PhotonMap> caustics;
+  if (options.caustics) {
+    const auto photons_start = std::chrono::steady_clock::now();
+    caustics = trace_caustics(scene, options);
+    statistics.photons_s = seconds_since(photons_start);
+  }
 
   layer.radiance = Image(camera.width, camera.height, 3);
   layer.optical = Image(camera.width, camera.height, 1);
@@ -159,6 +192,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     TreeTally tally;
     int met_optical = 0;
     double distance_m = 0.0;
+    glm::dvec3 caustic_error(0.0);
     for (int s = 0; s < options.samples; ++s) {
       const glm::dvec2 place = places.at(x, y, s);
       glm::dvec3 sample(0.0);
@@ -166,6 +200,13 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
           through(x + place.x, y + place.y), limits, sum.scratch, tally,
           [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
             sample += weight * shade(light, &geometry, point, tally.rays);
+            if (!caustics) return;
+            const PhotonMap::Irradiance irradiance = caustics->at(point.position, point.face);
+            const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
+            sample += radiance_per_irradiance * irradiance.mean;
+            // Samples of a pixel share the photons, so their errors add up as they are.
+            const double share = 1.0 / options.samples;
+            caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
           },
           [&](const glm::dvec3& direction, const glm::dvec3& weight) {
             sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
@@ -186,6 +227,8 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     sum.cut_max = std::max(sum.cut_max, tally.cut_weight / options.samples);
     sum.error_max = std::max(sum.error_max, radiance.standard_error());
     sum.error_sum += radiance.standard_error();
+    sum.caustic_max = std::max(sum.caustic_max, worst(caustic_error));
+    sum.caustic_sum += worst(caustic_error);
   });
   statistics.trace_s = seconds_since(trace_start);
 
@@ -196,6 +239,8 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     statistics.cut_weight_max = std::max(statistics.cut_weight_max, sum.cut_max);
     statistics.standard_error_max = std::max(statistics.standard_error_max, sum.error_max);
     statistics.standard_error_mean += sum.error_sum / pixels;
+    statistics.caustic_standard_error_max = std::max(statistics.caustic_standard_error_max, sum.caustic_max);
+    statistics.caustic_standard_error_mean += sum.caustic_sum / pixels;
   });
   const double rays_from_eye = pixels * options.samples;
   statistics.cut_weight_mean = all.cut_weight / rays_from_eye;
