@@ -84,6 +84,7 @@ void ForwardPass::gather_instances(const Scene& scene) {
   optical_.assign(scene.meshes.size(), {});
   visible_.clear();
   alone_.clear();
+  everything_.clear();
   for (const Instance& instance : scene.instances)
     (optical(scene, instance) ? optical_ : lambertian_)[static_cast<std::size_t>(instance.mesh)].push_back(
         attributes(scene, instance));
@@ -231,10 +232,32 @@ void ForwardPass::bind_environment(const gl::Program& program) const {
 void ForwardPass::draw_visible(const glm::mat4& world_to_clip, Objects objects) const {
   const Visible& seen = visible(world_to_clip, objects);
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
-    const Batch& batch = seen.batches[m];
-    if (batch.instance_count == 0) continue;
-    batch.array.bind();
-    glDrawElementsInstanced(GL_TRIANGLES, meshes_[m].index_count, GL_UNSIGNED_INT, nullptr, batch.instance_count);
+    if (seen.batches[m].instance_count > 0) draw_batch(m, seen.batches[m], 1);
+  }
+}
+
+void ForwardPass::draw_batch(std::size_t mesh, const Batch& batch, int copies) const {
+  constexpr GLuint kInstanceBinding = 1;
+  batch.array.bind();
+  if (copies > 1) glVertexArrayBindingDivisor(batch.array.id(), kInstanceBinding, static_cast<GLuint>(copies));
+  glDrawElementsInstanced(GL_TRIANGLES, meshes_[mesh].index_count, GL_UNSIGNED_INT, nullptr,
+                          copies * batch.instance_count);
+  if (copies > 1) glVertexArrayBindingDivisor(batch.array.id(), kInstanceBinding, 1);
+}
+
+void ForwardPass::draw_all(Objects objects, int copies) const {
+  auto found = everything_.find(objects);
+  if (found == everything_.end()) {
+    found = everything_.emplace(objects, std::vector<Batch>(meshes_.size())).first;
+    for (std::size_t m = 0; m < meshes_.size(); ++m) {
+      std::vector<InstanceAttributes> all;
+      if (objects != Objects::optical) all = lambertian_[m];
+      if (objects != Objects::lambertian) all.insert(all.end(), optical_[m].begin(), optical_[m].end());
+      if (!all.empty()) found->second[m] = make_batch(m, all);
+    }
+  }
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    if (found->second[m].instance_count > 0) draw_batch(m, found->second[m], copies);
   }
 }
 
@@ -279,6 +302,12 @@ void ForwardPass::draw_geometry(const Camera& camera, const gl::Program& program
 
 void ForwardPass::draw_instance(const Scene& scene, int instance, const glm::mat4& world_to_clip,
                                 const gl::Program& program) const {
+  program.use();
+  program.set("world_to_clip", world_to_clip);
+  draw_alone(scene, instance, 1);
+}
+
+void ForwardPass::draw_alone(const Scene& scene, int instance, int copies) const {
   const Instance& object = scene.instances[static_cast<std::size_t>(instance)];
   const auto mesh = static_cast<std::size_t>(object.mesh);
   auto found = alone_.find(instance);
@@ -286,10 +315,7 @@ void ForwardPass::draw_instance(const Scene& scene, int instance, const glm::mat
     const InstanceAttributes one = attributes(scene, object);
     found = alone_.emplace(instance, make_batch(mesh, {&one, 1})).first;
   }
-  program.use();
-  program.set("world_to_clip", world_to_clip);
-  found->second.array.bind();
-  glDrawElementsInstanced(GL_TRIANGLES, meshes_[mesh].index_count, GL_UNSIGNED_INT, nullptr, 1);
+  draw_batch(mesh, found->second, copies);
 }
 
 void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Program& program, Objects objects) const {

@@ -40,6 +40,13 @@ class ForwardPass {
   /// its uniform `world_to_clip`. Depth, blending and culling are as the caller has set them.
   void draw_instance(const Scene&, int instance, const glm::mat4& world_to_clip, const gl::Program&) const;
 
+  /// Objects alone with the program in use, whose vertex stage takes what `opaque.vert.glsl` takes and which transforms
+  /// them itself: all of them, each `copies` times one after the other (gl_InstanceID / copies tells which), or one by
+  /// its index, or those that `world_to_clip` sees.
+  void draw_all(Objects, int copies) const;
+  void draw_alone(const Scene&, int instance, int copies) const;
+  void draw_seen(const glm::mat4& world_to_clip, Objects objects) const { draw_visible(world_to_clip, objects); }
+
   /// Opaque objects only, unshaded: albedo, distance from the eye [m], unit normal and emission into the four colour
   /// attachments of the bound framebuffer; clears and writes depth.
   void draw_surface_points(const Camera&);
@@ -92,12 +99,14 @@ class ForwardPass {
   Batch make_batch(std::size_t mesh, std::span<const InstanceAttributes>) const;
   const Visible& visible(const glm::mat4& world_to_clip, Objects) const;
   void draw_visible(const glm::mat4& world_to_clip, Objects) const;
+  void draw_batch(std::size_t mesh, const Batch&, int copies) const;
 
   std::vector<Vertices> meshes_;
   std::vector<std::string> mesh_names_;
   std::vector<std::vector<InstanceAttributes>> lambertian_, optical_;  // by mesh
   mutable std::vector<Visible> visible_;                               // of the last cameras and lights, newest last
   mutable std::map<int, Batch> alone_;                                 // instances drawn by themselves
+  mutable std::map<Objects, std::vector<Batch>> everything_;           // instances seen or not
   gl::Buffer lights_;
   gl::Texture environment_;
   Environment gradient_;

@@ -33,5 +33,8 @@ void main() {
   point_emission = vec4(emission, 1.0);
 #else
   radiance = vec4(surface_radiance(world_position, n, albedo, emission, light_visibilities(world_position)), 1.0);
+#ifdef DISTANCE_IN_ALPHA
+  radiance.a = eye_distance_m;
+#endif
 #endif
 }
