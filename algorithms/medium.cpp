@@ -1,5 +1,7 @@
 #include "algorithms/medium.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,22 @@ gl::Texture make_map(const std::string& label, const glm::ivec3& size, const std
   return map;
 }
 
+// Densities beyond what 16-bit floats hold, or so small that those lose their bits, are stored as multiples of a power
+// of two, which changes none of them.
+float map_unit(const std::vector<float>& density) {
+  const float greatest = *std::max_element(density.begin(), density.end());
+  if (greatest == 0 || (greatest >= 1.0F / 64 && greatest < 32768)) return 1;
+  int exponent = 0;
+  std::frexp(greatest, &exponent);
+  return std::ldexp(1.0F, std::max(exponent, -60));
+}
+
+std::vector<float> in_unit(std::vector<float> density, float unit) {
+  for (float& d : density)
+    d /= unit;
+  return density;
+}
+
 }  // namespace
 
 Medium::Medium(const Scene& scene, const char* technique) {
@@ -51,14 +69,17 @@ Medium::Medium(const Scene& scene, const char* technique) {
     throw InputError(fmt::format("{}: the volume '{}' has {}×{}×{} voxels, this device allows {} along an axis",
                                  technique, volume.name, volume.size.x, volume.size.y, volume.size.z, limit));
   }
-  density_ = make_map(volume.name + " density", volume.size, volume.density);
+  density_unit_ = map_unit(volume.density);
+  const std::string label = volume.name + " density";
+  density_ = density_unit_ == 1 ? make_map(label, volume.size, volume.density)
+                                : make_map(label, volume.size, in_unit(volume.density, density_unit_));
   if (volume.light >= 0) scattering_ = make_map(volume.name + " scattering", volume.size, volume.scattering);
   if (!volume.transfer.empty()) {
     transfer_ = gl::Texture::make_2d(volume.name + " transfer", gl::Format::rgba32f, kTransferTexels, 1);
     transfer_.upload(tabulate(volume.transfer));
     transfer_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
     const float low = volume.transfer.front().density;
-    transfer_range_ = {low, 1 / (volume.transfer.back().density - low)};
+    transfer_range_ = {low / density_unit_, density_unit_ / (volume.transfer.back().density - low)};
   }
 }
 
@@ -74,7 +95,7 @@ gl::Defines Medium::defines(gl::Defines light_defines) const {
 void Medium::bind(const gl::Program& program, const Volume& volume, const glm::vec3& incident) const {
   density_.bind(0);
   program.set("volume_to_world", volume.to_world);
-  program.set("volume_extinction", volume.extinction);
+  program.set("volume_extinction", transfer_ ? volume.extinction : volume.extinction * density_unit_);
   program.set("volume_albedo", volume.albedo);
   program.set("volume_emission", volume.emission);
   program.set("uniform_source", volume.emission + volume.albedo * incident);

@@ -23,6 +23,7 @@ class Medium {
 
  private:
   gl::Texture density_, transfer_, scattering_;
+  float density_unit_ = 1;  // what 1 in the map stands for
   glm::vec2 transfer_range_{0.0F};
 };
 
