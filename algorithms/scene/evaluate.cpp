@@ -46,6 +46,9 @@ Mesh make_shape(const SceneDescription& scene, const MeshDescription& mesh) {
     case MeshKind::relief:
       return make_relief({glm::vec2(mesh.plane_size), segments, f(mesh.height), f(mesh.frequency), whole(mesh.octaves),
                           f(mesh.ripples), static_cast<std::uint32_t>(mesh.seed)});
+    case MeshKind::tiles:
+      return make_tiles({glm::vec2(mesh.plane_size), whole(mesh.columns), whole(mesh.rows), f(mesh.joint), mesh.running,
+                         f(mesh.contrast), f(mesh.hue), static_cast<std::uint32_t>(mesh.seed)});
     case MeshKind::file:
       break;
   }

@@ -4,6 +4,7 @@
 
 #include "algorithms/scene/hash.hpp"
 #include "algorithms/scene/mesh_file.hpp"
+#include "algorithms/scene/mesh_processing.hpp"
 #include "algorithms/scene/scene_description.hpp"
 
 /// Materials, meshes, instances and the forest.
@@ -23,24 +24,45 @@ void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, M
   double fit_m = 0;
   reader.number("crease_deg", crease_deg, {0, 180});
   reader.number("fit_m", fit_m, kLength);
+  MeshProcessing processing;
+  double subdivide = 0;
+  reader.boolean("close_holes", processing.close_holes);
+  reader.integer("subdivide", subdivide, {0, 5});
+  processing.subdivide = static_cast<int>(subdivide);
   const std::filesystem::path path = parse_file_name(reader, "file", folder, scene);
-  located(reader, "file", [&] {
-    MeshFile file = load_mesh_file(path, crease_deg);
-    // Assimp may look into the file itself first; what it refers to counts as well.
-    for (const std::filesystem::path& other : file.files) {
+  // What a file refers to counts as well; Assimp may look into the file itself first.
+  const auto note_files = [&](const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& other : files) {
       if (other != path) scene.files_read.emplace_back(other.filename().string(), sha256_file(other));
     }
-    if (fit_m > 0) fit_mesh(file.mesh, fit_m);
-    mesh.from_file = std::move(file.mesh);
+  };
+  Mesh& out = mesh.from_file.emplace();
+  if (reader.has("isosurface")) {
+    IsosurfaceOptions options;
+    reader.number("isosurface", options.level, {-1e30, 1e30});
+    reader.number("refine", options.refine, {1, 4});
+    const VolumeFile volume = located(reader, "file", [&] { return load_volume_file(path); });
+    note_files(volume.files);
+    out = located(reader, "isosurface", [&] { return isosurface(volume, options); });
+    if (reader.has("crease_deg")) make_normals(out, crease_deg);
+  } else {
+    MeshFile file = located(reader, "file", [&] { return load_mesh_file(path, crease_deg); });
+    note_files(file.files);
+    out = std::move(file.mesh);
+  }
+  located(reader, "file", [&] {
+    process_mesh(out, processing, crease_deg);
+    if (fit_m > 0) fit_mesh(out, fit_m);
   });
 }
 
 void parse_shape(TableReader& reader, MeshDescription& mesh) {
   reader.require("shape");
-  static constexpr MeshKind kKinds[] = {MeshKind::sphere, MeshKind::box,   MeshKind::plane,  MeshKind::cylinder,
-                                        MeshKind::cone,   MeshKind::torus, MeshKind::teapot, MeshKind::relief};
-  mesh.kind =
-      kKinds[reader.choice("shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "teapot", "relief"}, 0)];
+  static constexpr MeshKind kKinds[] = {MeshKind::sphere,   MeshKind::box,    MeshKind::plane,
+                                        MeshKind::cylinder, MeshKind::cone,   MeshKind::torus,
+                                        MeshKind::teapot,   MeshKind::relief, MeshKind::tiles};
+  mesh.kind = kKinds[reader.choice(
+      "shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "teapot", "relief", "tiles"}, 0)];
   switch (mesh.kind) {
     case MeshKind::sphere:
       reader.number("radius", mesh.radius, kLength);
@@ -79,6 +101,16 @@ void parse_shape(TableReader& reader, MeshDescription& mesh) {
       reader.number("frequency", mesh.frequency, {0, 1000});
       reader.integer("octaves", mesh.octaves, {1, 12});
       reader.number("ripples", mesh.ripples, kShare);
+      reader.integer("seed", mesh.seed, {0, 4294967295.0});
+      break;
+    case MeshKind::tiles:
+      reader.vector("size", mesh.plane_size, kLength);
+      reader.integer("columns", mesh.columns, {1, 256});
+      reader.integer("rows", mesh.rows, {1, 256});
+      reader.number("joint", mesh.joint, {0, 0.9});
+      mesh.running = reader.choice("bond", {"stack", "running"}, 0) == 1;
+      reader.number("contrast", mesh.contrast, kShare);
+      reader.number("hue", mesh.hue, kShare);
       reader.integer("seed", mesh.seed, {0, 4294967295.0});
       break;
     case MeshKind::file:

@@ -32,6 +32,18 @@ struct ReliefOptions {
 };
 Mesh make_relief(const ReliefOptions&);
 
+/// A plane in y = 0, centred, facing +y, uv in [0,1]², of tiles or bricks in vertex colours that multiply the albedo.
+struct TileOptions {
+  glm::vec2 size{1.0F};
+  int columns = 8, rows = 8;
+  float joint = 0.05F;    ///< width of the joints, a share of a tile's side
+  bool running = false;   ///< every other course moved by half a brick, tones at random; else a chequered pattern
+  float contrast = 0.6F;  ///< the darkest tile's tone is 1 − contrast
+  float hue = 0.2F;       ///< how far a tile's channels may fall below its tone
+  std::uint32_t seed = 1;
+};
+Mesh make_tiles(const TileOptions&);
+
 /// A ground with relief and many trees of a few kinds, each kind a few meshes that are instanced, finer near the
 /// clearing. Appends meshes, materials and instances to `scene`. Instances are called ground, tree_0 … and
 /// undergrowth_0 …

@@ -27,7 +27,7 @@ struct Placement {
   std::optional<Spin> spin;  ///< after the rotation
 };
 
-enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, teapot, relief };
+enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, teapot, relief, tiles };
 struct MeshDescription {
   std::string name;
   Place place;
@@ -38,6 +38,8 @@ struct MeshDescription {
   glm::dvec2 plane_size{1.0};
   double segments = 32;
   double frequency = 3, octaves = 3, ripples = 0, seed = 1;
+  double columns = 8, rows = 8, joint = 0.05, contrast = 0.6, hue = 0.2;
+  bool running = false;
 };
 
 struct MaterialDescription {

@@ -233,5 +233,44 @@ TEST(ProceduralTeapot, BodyFacesOutwards) {
   EXPECT_TRUE(bottom);
 }
 
+TEST(Tiles, CoverThePlaneOnceInFlatColors) {
+  for (const bool running : {false, true}) {
+    TileOptions options;
+    options.size = {3, 2};
+    options.columns = 5;
+    options.rows = 4;
+    options.joint = 0.1F;
+    options.running = running;
+    const Mesh mesh = make_tiles(options);
+    EXPECT_NEAR(area(mesh), 6.0, 1e-5);
+    double tiles_area = 0;
+    float lightest = 0;
+    for (const auto& t : mesh.triangles) {
+      EXPECT_GT(area_vector(mesh, t).y, 0.0);  // faces +y
+      EXPECT_EQ(mesh.colors[t[0]], mesh.colors[t[1]]);
+      EXPECT_EQ(mesh.colors[t[0]], mesh.colors[t[2]]);
+      for (int i = 0; i < 3; ++i) {
+        const glm::vec3 p = mesh.positions[t[i]];
+        EXPECT_NEAR(p.x, (mesh.uvs[t[i]].x - 0.5F) * 3, 1e-6);
+        EXPECT_NEAR(p.z, (0.5F - mesh.uvs[t[i]].y) * 2, 1e-6);
+      }
+      const glm::vec3 joint(0.5F * (1 - options.contrast) + 0.1F);
+      if (mesh.colors[t[0]] != joint) tiles_area += glm::length(area_vector(mesh, t));
+      lightest = std::max(lightest, mesh.colors[t[0]].x);
+    }
+    EXPECT_NEAR(tiles_area / 6.0, 0.9 * 0.9, 1e-4);  // what the joints leave
+    EXPECT_GT(lightest, 0.6F);
+    // No T-junctions: every edge inside the plane has a partner that runs the other way.
+    const auto edges = directed_edges(mesh);
+    for (const auto& [edge, count] : edges) {
+      EXPECT_EQ(count, 1);
+      const auto border = [](const Position& p) {
+        return std::abs(std::abs(std::get<0>(p)) - 1.5F) < 1e-6F || std::abs(std::abs(std::get<2>(p)) - 1.0F) < 1e-6F;
+      };
+      EXPECT_TRUE(edges.contains({edge.second, edge.first}) || (border(edge.first) && border(edge.second)));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pellucid
