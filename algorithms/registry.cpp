@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/distance_impostors/distance_impostors.hpp"
+#include "algorithms/environment_map/environment_map.hpp"
 #include "algorithms/ray_marching/ray_marching.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
@@ -14,6 +16,12 @@ namespace pellucid {
 
 // One line for each paper or baseline; the other is in CMakeLists.txt.
 static const std::array kTechniques{
+    TechniqueInfo{"distance_impostors", "Distance impostors", "szirmaykalos2005", false,
+                  "reflection and refraction by searching for rays' hits in cube maps of radiance and distance",
+                  distance_impostors::table, distance_impostors::make, true},
+    TechniqueInfo{"environment_map", "Environment map", "blinn1976", true,
+                  "classical environment mapping, or with a box or sphere as proxy geometry", environment_map::table,
+                  environment_map::make, true},
     TechniqueInfo{"sampling_hulls", "Sampling hulls", "imagire2007", false,
                   "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
                   sampling_hulls::table, sampling_hulls::make},

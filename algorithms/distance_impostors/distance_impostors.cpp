@@ -1,0 +1,58 @@
+// Szirmay-Kalos et al. 2005 (references.bib: szirmaykalos2005).
+#include "algorithms/distance_impostors/distance_impostors.hpp"
+
+#include "algorithms/distance_impostors/localized.hpp"
+
+namespace pellucid::distance_impostors {
+namespace {
+
+class DistanceImpostors final : public Technique {
+ public:
+  ParameterRef parameters() override { return bind_parameters(parameters_); }
+  void prepare(const Scene& scene) override { localized_.prepare(scene, maps(), lookup()); }
+  void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
+              gl::PassTimer& timer) override {
+    localized_.render(scene, camera, forward, target, timer, maps(), lookup());
+  }
+  void native_errors(nlohmann::json& out) const override { localized_.native_errors(out); }
+  std::string reload_shaders() override { return localized_.reload_shaders(); }
+
+ private:
+  MapSettings maps() const {
+    const Parameters& p = parameters_;
+    return {.cube_size = p.cube_size,
+            .format = p.cube_format,
+            .store = p.distance,
+            .layers = p.cube_pass,
+            .anchor = p.reference_point,
+            .anchor_point = {p.reference_x_m, p.reference_y_m, p.reference_z_m},
+            .refresh = p.refresh,
+            .refresh_frames = p.refresh_frames,
+            .refresh_ms = p.refresh_ms,
+            .refresh_distance_m = p.refresh_distance_m,
+            .mutual = p.mutual,
+            .refractor_size = p.refractor_size};
+  }
+  LookupSettings lookup() const {
+    const Parameters& p = parameters_;
+    return {.parallax = Parallax::impostor,
+            .search = {p.iterations, p.scheme, p.linear_steps},
+            .bounces = p.bounces,
+            .internal = p.internal_reflections,
+            .proxy_radius_m = 0};
+  }
+
+  Parameters parameters_;
+  Localized localized_{"distance_impostors"};
+};
+
+}  // namespace
+
+const ParameterTable& table() {
+  return parameter_table<Parameters>();
+}
+std::unique_ptr<Technique> make() {
+  return std::make_unique<DistanceImpostors>();
+}
+
+}  // namespace pellucid::distance_impostors

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <memory>
+
+#include "algorithms/distance_impostors/settings.hpp"
+#include "algorithms/technique.hpp"
+
+/// Approximate ray tracing in cube maps of radiance and distance: Szirmay-Kalos et al. 2005 (references.bib:
+/// szirmaykalos2005).
+namespace pellucid::distance_impostors {
+
+struct Parameters {
+  int iterations = 2;
+  Scheme scheme = Scheme::false_position;
+  int linear_steps = 64;
+  int cube_size = 512;
+  CubeFormat cube_format = CubeFormat::half;
+  DistanceStore distance = DistanceStore::texture;
+  CubeLayers cube_pass = CubeLayers::geometry;
+  Anchor reference_point = Anchor::object;
+  float reference_x_m = 0, reference_y_m = 0, reference_z_m = 0;
+  Refresh refresh = Refresh::frames;
+  int refresh_frames = 1;
+  float refresh_ms = 150;
+  float refresh_distance_m = 0.25F;
+  int mutual = 1;
+  int bounces = 2;
+  int refractor_size = 256;
+  int internal_reflections = 2;
+
+  static constexpr void parameters(auto& self, auto&& visit) {
+    visit(PARAM(iterations), {.symbol = "NITER",
+                              .range = {-1, 32},
+                              .cite = "Sec. 2.2",
+                              .doc = "refinements of the hit; -1 is the first guess p, 0 the second, l; of the linear "
+                                     "scheme: bisections",
+                              .when = Change::program});
+    visit(PARAM(scheme), {.cite = "Sec. 2.2",
+                          .doc = "root finding: secant, false position, or (beyond the paper) linear search and "
+                                 "bisection",
+                          .when = Change::program,
+                          .choices = "secant|false_position|linear"});
+    visit(PARAM(linear_steps), {.range = {2, 1024},
+                                .cite = "beyond the paper",
+                                .doc = "steps of the linear scheme, equal in angle",
+                                .when = Change::program});
+    visit(PARAM(cube_size), {.range = {64, 2048},
+                             .cite = "Sec. 6",
+                             .doc = "width and height of a face of the cube maps",
+                             .when = Change::precompute,
+                             .unit = "texels"});
+    visit(PARAM(cube_format), {.cite = "Sec. 3",
+                               .doc = "bits of a channel of the cube maps: 16 (half) or 32 (single)",
+                               .when = Change::precompute,
+                               .choices = "half|single"});
+    visit(PARAM(distance), {.cite = "Sec. 6",
+                            .doc = "keep the distance in the radiance's alpha, or in a texture of its own",
+                            .when = Change::precompute,
+                            .choices = "alpha|texture"});
+    visit(PARAM(cube_pass), {.cite = "beyond the paper",
+                             .doc = "faces of a cube map chosen by a geometry shader, by the vertex shader, or drawn "
+                                    "one by one",
+                             .when = Change::precompute,
+                             .choices = "geometry|vertex|faces"});
+    visit(PARAM(reference_point), {.symbol = "o",
+                                   .cite = "Sec. 2",
+                                   .doc = "where the maps are drawn from: each object's middle, the middle of the "
+                                          "opaque objects, or a point",
+                                   .when = Change::precompute,
+                                   .choices = "object|scene|point"});
+    visit(PARAM(reference_x_m),
+          {.range = {-1e4, 1e4}, .cite = "Sec. 2", .doc = "x of that point", .when = Change::precompute, .unit = "m"});
+    visit(PARAM(reference_y_m),
+          {.range = {-1e4, 1e4}, .cite = "Sec. 2", .doc = "y of that point", .when = Change::precompute, .unit = "m"});
+    visit(PARAM(reference_z_m),
+          {.range = {-1e4, 1e4}, .cite = "Sec. 2", .doc = "z of that point", .when = Change::precompute, .unit = "m"});
+    visit(PARAM(refresh), {.cite = "Sec. 6",
+                           .doc = "draw an object's maps once, every refresh_frames frames, every refresh_ms, or when "
+                                  "it has moved by refresh_distance_m",
+                           .choices = "once|frames|interval|movement"});
+    visit(PARAM(refresh_frames),
+          {.range = {1, 100000}, .cite = "Sec. 6", .doc = "frames from one drawing to the next"});
+    visit(PARAM(refresh_ms),
+          {.range = {0, 60000}, .cite = "Sec. 6", .doc = "time from one drawing to the next", .unit = "ms"});
+    visit(PARAM(refresh_distance_m), {.range = {0, 1e4},
+                                      .cite = "Sec. 1",
+                                      .doc = "movement of the reference point that calls for new maps",
+                                      .unit = "m"});
+    visit(PARAM(mutual),
+          {.range = {0, 4},
+           .cite = "Sec. 6",
+           .doc = "times that the other mirrors, metals and dielectrics are drawn into each one's maps"});
+    visit(PARAM(bounces), {.range = {1, 2},
+                           .cite = "Sec. 4",
+                           .doc = "refractions: where a ray enters, or also where it leaves, by the refractor map",
+                           .when = Change::precompute});
+    visit(PARAM(refractor_size), {.range = {16, 2048},
+                                  .cite = "Sec. 4",
+                                  .doc = "width and height of a face of the refractor maps",
+                                  .when = Change::precompute,
+                                  .unit = "texels"});
+    visit(PARAM(internal_reflections), {.range = {0, 8},
+                                        .cite = "beyond the paper",
+                                        .doc = "reflections inside an object, after which all that is left leaves; "
+                                               "with 2 bounces",
+                                        .when = Change::program});
+  }
+};
+static_assert(well_formed<Parameters>());
+
+const ParameterTable& table();
+std::unique_ptr<Technique> make();
+
+}  // namespace pellucid::distance_impostors

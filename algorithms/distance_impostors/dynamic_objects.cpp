@@ -1,0 +1,260 @@
+// Szirmay-Kalos et al. 2005 (references.bib: szirmaykalos2005), Sec. 6: every dynamic object with its own maps.
+#include "algorithms/distance_impostors/dynamic_objects.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "algorithms/scene/bounds.hpp"
+
+namespace pellucid::distance_impostors {
+namespace {
+
+constexpr const char* kFolder = "algorithms/distance_impostors/";
+
+const Instance& instance_of(const Scene& scene, const DynamicObjects::Object& object) {
+  return scene.instances[static_cast<std::size_t>(object.instance)];
+}
+const Material& material_of(const Scene& scene, const DynamicObjects::Object& object) {
+  return scene.materials[static_cast<std::size_t>(instance_of(scene, object).material)];
+}
+
+Bounds mesh_bounds(const Mesh& mesh) {
+  Bounds bounds;
+  if (!mesh.positions.empty()) bounds.min = bounds.max = mesh.positions.front();
+  for (const glm::vec3& p : mesh.positions) {
+    bounds.min = glm::min(bounds.min, p);
+    bounds.max = glm::max(bounds.max, p);
+  }
+  return bounds;
+}
+
+// Around the opaque objects: what the proxies stand for.
+Bounds opaque_bounds(const Scene& scene) {
+  Bounds all;
+  bool any = false;
+  for (const Instance& instance : scene.instances) {
+    if (optical(scene, instance)) continue;
+    const Bounds bounds = mesh_bounds(scene.meshes[static_cast<std::size_t>(instance.mesh)]);
+    for (int i = 0; i < 8; ++i) {
+      const glm::vec4 corner((i & 1) != 0 ? bounds.max.x : bounds.min.x, (i & 2) != 0 ? bounds.max.y : bounds.min.y,
+                             (i & 4) != 0 ? bounds.max.z : bounds.min.z, 1.0F);
+      const glm::vec3 p(instance.to_world * corner);
+      all.min = any ? glm::min(all.min, p) : p;
+      all.max = any ? glm::max(all.max, p) : p;
+      any = true;
+    }
+  }
+  return any ? all : world_bounds(scene);
+}
+
+}  // namespace
+
+void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bool refractors, const char* technique) {
+  objects_.clear();
+  refractors_.clear();
+  middles_.clear();
+  warnings_.clear();
+  cost_ = {};
+  cost_timer_ = gl::PassTimer(gl::Detail::frame);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    if (!optical(scene, instance)) continue;
+    Object& object = objects_.emplace_back();
+    object.instance = static_cast<int>(i);
+    object.cube = std::make_unique<ImpostorCube>(instance.name + " cube", settings);
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    const Bounds bounds = mesh_bounds(mesh);
+    middles_[instance.mesh] = 0.5F * (bounds.min + bounds.max);
+    if (!refractors || material_of(scene, object).kind != SurfaceKind::dielectric) continue;
+    const gl::Format format = settings.format == CubeFormat::half ? gl::Format::rgba16f : gl::Format::rgba32f;
+    const auto [at, made] =
+        refractors_.try_emplace(instance.mesh, mesh, settings.refractor_size, format, settings.layers);
+    object.refractor = &at->second;
+    if (made && !at->second.shape().exact()) warnings_.push_back(describe(mesh.name, at->second.shape()));
+  }
+  if (objects_.empty())
+    throw InputError(fmt::format("{}: scene '{}' has no mirror, metal or dielectric", technique, scene.name));
+  const Bounds proxy = opaque_bounds(scene);
+  proxy_min_ = proxy.min;
+  proxy_max_ = proxy.max;
+}
+
+glm::vec3 DynamicObjects::center(const Scene& scene, const Object& object) const {
+  const Instance& instance = instance_of(scene, object);
+  return glm::vec3(instance.to_world * glm::vec4(middles_.at(instance.mesh), 1.0F));
+}
+
+glm::vec3 DynamicObjects::anchor(const Scene& scene, const Object& object, const MapSettings& settings) const {
+  switch (settings.anchor) {
+    case Anchor::object:
+      return center(scene, object);
+    case Anchor::scene:
+      return 0.5F * (proxy_min_ + proxy_max_);
+    case Anchor::point:
+      break;
+  }
+  return settings.anchor_point;
+}
+
+std::vector<std::size_t> DynamicObjects::due(const Scene& scene, const MapSettings& settings) {
+  const auto now = std::chrono::steady_clock::now();
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    Object& object = objects_[i];
+    const glm::vec3 at = anchor(scene, object, settings);
+    bool again = !object.drawn;
+    if (settings.refresh == Refresh::frames)
+      again = again || cost_.frames - object.frame >= static_cast<std::uint64_t>(settings.refresh_frames);
+    if (settings.refresh == Refresh::interval)
+      again = again || std::chrono::duration<float, std::milli>(now - object.time).count() >= settings.refresh_ms;
+    if (settings.refresh == Refresh::movement)
+      again = again || glm::distance(at, object.reference) > settings.refresh_distance_m;
+    if (!again) continue;
+    object.reference = at;
+    object.frame = cost_.frames;
+    object.time = now;
+    object.drawn = true;
+    which.push_back(i);
+  }
+  ++cost_.frames;
+  cost_.refreshes += which.size();
+  return which;
+}
+
+void DynamicObjects::draw_maps(const Scene& scene, const ForwardPass& forward, const MapSettings& settings,
+                               const LookupSettings&, const std::vector<std::size_t>& which) {
+  for (const std::size_t i : which)
+    objects_[i].cube->draw(cube_scene_, forward, CubeCamera::around(scene, objects_[i].reference, settings.layers));
+}
+
+void DynamicObjects::draw_mutual(const Scene& scene, const ForwardPass& forward, const MapSettings& settings,
+                                 const LookupSettings& lookup, const std::vector<std::size_t>& which) {
+  if (objects_.size() < 2) return;
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  for (int round = 0; round < settings.mutual; ++round) {
+    for (const std::size_t i : which) {
+      const ImpostorCube& cube = *objects_[i].cube;
+      cube.target().draw(settings.layers, [&](int face) {
+        for (std::size_t j = 0; j < objects_.size(); ++j) {
+          if (j == i) continue;
+          const gl::Program& shade = program(material_of(scene, objects_[j]).kind, Use::cube, settings, lookup);
+          bind(scene, objects_[j], lookup, shade);
+          draw_cube_object(forward, scene, objects_[j].instance, cube.camera(), face, shade);
+        }
+      });
+    }
+  }
+}
+
+void DynamicObjects::draw(const Scene& scene, const ForwardPass& forward, const Camera& camera,
+                          const MapSettings& settings, const LookupSettings& lookup) {
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  const glm::mat4 world_to_clip = camera.projection() * camera.world_to_view();
+  for (const Object& object : objects_) {
+    const gl::Program& shade = program(material_of(scene, object).kind, Use::frame, settings, lookup);
+    bind(scene, object, lookup, shade);
+    shade.set("eye", camera.view.eye);
+    forward.draw_instance(scene, object.instance, world_to_clip, shade);
+  }
+}
+
+void DynamicObjects::draw_report(const Scene& scene, const ForwardPass& forward, const Camera& camera,
+                                 const MapSettings& settings, const LookupSettings& lookup, const Object& object) {
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  const gl::Program& shade = program(material_of(scene, object).kind, Use::report, settings, lookup);
+  bind(scene, object, lookup, shade);
+  shade.set("eye", camera.view.eye);
+  forward.draw_instance(scene, object.instance, camera.projection() * camera.world_to_view(), shade);
+}
+
+gl::Defines DynamicObjects::defines(SurfaceKind kind, const LookupSettings& lookup) const {
+  gl::Defines defines{{"KIND", fmt::to_string(static_cast<int>(kind))},
+                      {"PARALLAX", fmt::to_string(static_cast<int>(lookup.parallax))}};
+  const bool refractor = kind == SurfaceKind::dielectric && lookup.bounces > 1;
+  if (lookup.parallax == Parallax::impostor || refractor) {
+    defines.emplace_back("ITERATIONS", fmt::to_string(lookup.search.iterations));
+    defines.emplace_back("SCHEME", fmt::to_string(static_cast<int>(lookup.search.scheme)));
+    defines.emplace_back("LINEAR_STEPS", fmt::to_string(lookup.search.steps));
+  }
+  if (kind == SurfaceKind::dielectric)
+    defines.emplace_back("INTERNAL", fmt::to_string(refractor ? lookup.internal : 0));
+  if (refractor) defines.emplace_back("REFRACTOR", "1");
+  return defines;
+}
+
+const gl::Program& DynamicObjects::program(SurfaceKind kind, Use use, const MapSettings& settings,
+                                           const LookupSettings& lookup) {
+  gl::Defines wanted = defines(kind, lookup);
+  if (use == Use::cube) {
+    if (settings.store == DistanceStore::alpha) wanted.emplace_back("DISTANCE_IN_ALPHA", "1");
+    wanted.emplace_back("LAYERS", fmt::to_string(static_cast<int>(settings.layers)));
+  }
+  Compiled& compiled = programs_[{kind, use}];
+  if (compiled.program && compiled.defines == wanted) return compiled.program;
+  const std::string fragment = std::string(kFolder) + (use == Use::report ? "report.frag.glsl" : "surface.frag.glsl");
+  if (use == Use::cube)
+    compiled.program = make_cube_program("optical object in a cube", fragment, settings.layers, wanted);
+  else
+    compiled.program = gl::Program("optical object", {"algorithms/shaders/common/opaque.vert.glsl", fragment}, wanted);
+  compiled.defines = std::move(wanted);
+  return compiled.program;
+}
+
+void DynamicObjects::bind(const Scene& scene, const Object& object, const LookupSettings& lookup,
+                          const gl::Program& program) const {
+  const Material& material = material_of(scene, object);
+  object.cube->bind();
+  program.set("reference_point", object.reference);
+  program.set("reflectance", material.reflectance);
+  program.set("metal_n", material.metal_n);
+  program.set("metal_k", material.metal_k);
+  program.set("ior", material.ior);
+  program.set("absorption", material.absorption);
+  if (lookup.parallax == Parallax::box) {
+    program.set("proxy_min", proxy_min_ - object.reference);
+    program.set("proxy_max", proxy_max_ - object.reference);
+  }
+  if (lookup.parallax == Parallax::sphere) {
+    const glm::vec3 half = 0.5F * (proxy_max_ - proxy_min_);
+    program.set("proxy_radius", lookup.proxy_radius_m > 0 ? lookup.proxy_radius_m : (half.x + half.y + half.z) / 3.0F);
+  }
+  if (object.refractor == nullptr || lookup.bounces < 2) return;
+  object.refractor->bind();
+  const glm::mat4 to_world = instance_of(scene, object).to_world;
+  glm::mat4 from_center(1.0F);
+  from_center[3] = glm::vec4(object.refractor->center(), 1.0F);
+  program.set("map_to_world", to_world * from_center);
+  program.set("world_to_map", glm::inverse(to_world * from_center));
+}
+
+const DynamicObjects::Cost& DynamicObjects::cost() {
+  while (const auto time = cost_timer_.poll()) {
+    cost_.last_ms = time->frame_ms;
+    cost_.total_ms += time->frame_ms;
+    ++cost_.timed;
+  }
+  return cost_;
+}
+
+std::string DynamicObjects::reload_shaders() {
+  std::string words = cube_scene_.reload_shaders();
+  for (auto& [key, compiled] : programs_) {
+    if (compiled.program) words += compiled.program.reload();
+  }
+  return words;
+}
+
+}  // namespace pellucid::distance_impostors

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "algorithms/distance_impostors/impostor_cube.hpp"
+#include "algorithms/distance_impostors/refractor_map.hpp"
+#include "algorithms/forward_pass.hpp"
+#include "gl/timer.hpp"
+
+namespace pellucid::distance_impostors {
+
+/// The mirrors, metals and dielectrics of a scene, each with its own maps: the algorithm of Szirmay-Kalos et al. 2005,
+/// Sec. 6, in its preparation phase (update) and its frame phase (draw).
+class DynamicObjects {
+ public:
+  struct Object {
+    int instance = 0;
+    std::unique_ptr<ImpostorCube> cube;
+    const RefractorMap* refractor = nullptr;  ///< of its mesh; null for a mirror or metal
+    glm::vec3 reference{0.0F};                ///< o, where the maps were last drawn from
+    std::uint64_t frame = 0;                  ///< when
+    std::chrono::steady_clock::time_point time;
+    bool drawn = false;
+  };
+  struct Cost {
+    double last_ms = 0;           ///< of the last refreshes whose time is known, all objects together
+    double total_ms = 0;          ///< of all of them
+    std::uint64_t timed = 0;      ///< frames with refreshes whose time is known
+    std::uint64_t refreshes = 0;  ///< maps drawn
+    std::uint64_t frames = 0;
+  };
+
+  /// Drops the maps, finds the optical objects and, with `refractors`, makes their refractor maps. Throws InputError
+  /// when there is no such object.
+  void prepare(const Scene&, const MapSettings&, bool refractors, const char* technique);
+
+  /// Draws the maps that are due; returns the indices of their objects.
+  std::vector<std::size_t> due(const Scene&, const MapSettings&);
+  void draw_maps(const Scene&, const ForwardPass&, const MapSettings&, const LookupSettings&,
+                 const std::vector<std::size_t>& which);
+  /// The other objects into the maps of each.
+  void draw_mutual(const Scene&, const ForwardPass&, const MapSettings&, const LookupSettings&,
+                   const std::vector<std::size_t>& which);
+
+  /// All objects into the bound framebuffer, behind what its depth holds.
+  void draw(const Scene&, const ForwardPass&, const Camera&, const MapSettings&, const LookupSettings&);
+  /// One object with the three outputs of report.frag.glsl.
+  void draw_report(const Scene&, const ForwardPass&, const Camera&, const MapSettings&, const LookupSettings&,
+                   const Object&);
+
+  const std::vector<Object>& objects() const { return objects_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  gl::PassTimer& cost_timer() { return cost_timer_; }
+  const Cost& cost();
+  std::string reload_shaders();
+
+  /// What a program with lookup.glsl and refraction.glsl needs of an object: maps and uniforms.
+  void bind(const Scene&, const Object&, const LookupSettings&, const gl::Program&) const;
+  gl::Defines defines(SurfaceKind, const LookupSettings&) const;
+
+ private:
+  enum class Use { frame, cube, report };
+  const gl::Program& program(SurfaceKind, Use, const MapSettings&, const LookupSettings&);
+  glm::vec3 center(const Scene&, const Object&) const;
+  glm::vec3 anchor(const Scene&, const Object&, const MapSettings&) const;
+
+  std::vector<Object> objects_;
+  std::map<int, RefractorMap> refractors_;  // by mesh
+  std::map<int, glm::vec3> middles_;        // of the meshes' bounding boxes
+  std::vector<std::string> warnings_;
+  glm::vec3 proxy_min_{0.0F}, proxy_max_{0.0F};  // of the opaque objects, in the world
+  CubeScene cube_scene_;
+  struct Compiled {
+    gl::Defines defines;
+    gl::Program program;
+  };
+  std::map<std::pair<SurfaceKind, Use>, Compiled> programs_;
+  gl::PassTimer cost_timer_{gl::Detail::frame};
+  Cost cost_;
+};
+
+}  // namespace pellucid::distance_impostors

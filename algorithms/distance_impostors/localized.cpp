@@ -1,0 +1,54 @@
+#include "algorithms/distance_impostors/localized.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/distance_impostors/native_errors.hpp"
+
+namespace pellucid::distance_impostors {
+
+void Localized::prepare(const Scene& scene, const MapSettings& maps, const LookupSettings& lookup) {
+  frame_.reset();
+  objects_.prepare(scene, maps, lookup.bounces > 1, technique_);
+  for (const std::string& warning : objects_.warnings())
+    fmt::print(stderr, "warning: {}\n", warning);
+}
+
+void Localized::render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
+                       gl::PassTimer& timer, const MapSettings& maps, const LookupSettings& lookup) {
+  if (const std::vector<std::size_t> due = objects_.due(scene, maps); !due.empty()) {
+    auto pass = timer.pass("cube maps");
+    gl::PassTimer& cost = objects_.cost_timer();
+    cost.begin_frame();
+    objects_.draw_maps(scene, forward, maps, lookup, due);
+    objects_.draw_mutual(scene, forward, maps, lookup, due);
+    cost.end_frame();
+  }
+  {
+    auto pass = timer.pass("opaque");
+    target.framebuffer.bind();
+    forward.draw_shaded(camera, false);
+  }
+  {
+    auto pass = timer.pass("objects");
+    objects_.draw(scene, forward, camera, maps, lookup);
+  }
+  frame_ = Frame{&scene, &forward, camera, maps, lookup};
+}
+
+void Localized::native_errors(nlohmann::json& out) const {
+  const DynamicObjects::Cost& cost = objects_.cost();
+  out["cube_refreshes"] = cost.refreshes;
+  if (cost.timed > 0) {
+    const double each = cost.total_ms / static_cast<double>(cost.timed);
+    out["cube_ms"] = each;
+    out["cube_ms_per_frame"] = cost.total_ms / static_cast<double>(cost.frames);
+  }
+  if (!objects_.warnings().empty()) out["warnings"] = fmt::format("{}", fmt::join(objects_.warnings(), "; "));
+  if (frame_)
+    compare_hits(objects_, *frame_->scene, *frame_->forward, frame_->camera, frame_->maps, frame_->lookup, out);
+}
+
+}  // namespace pellucid::distance_impostors

@@ -1,0 +1,122 @@
+#include "algorithms/distance_impostors/native_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "algorithms/reference/geometry.hpp"
+
+namespace pellucid::distance_impostors {
+namespace {
+
+constexpr double kConverged = 0.01;  // | |l| / |l'| − 1 |
+constexpr double kOffset = 1e-4;     // of the hit's distance, before a point counts as hidden
+
+struct Errors {
+  std::vector<double> hit_m, direction_deg, seen_deg;
+  std::size_t rays = 0, unconverged = 0, hidden = 0, escaped = 0, total = 0;
+};
+
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+void summarise(std::vector<double>& values, const std::string& name, nlohmann::json& out) {
+  if (values.empty()) return;
+  double sum = 0;
+  for (const double v : values)
+    sum += v;
+  out[name + "_mean"] = sum / static_cast<double>(values.size());
+  out[name + "_median"] = quantile(values, 0.5);
+  out[name + "_q95"] = quantile(values, 0.95);
+}
+
+double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / std::numbers::pi;
+}
+
+glm::dvec3 xyz(const float* texel) {
+  return {static_cast<double>(texel[0]), static_cast<double>(texel[1]), static_cast<double>(texel[2])};
+}
+
+// One object's pixels. The environment is everything but the object itself, as in its maps.
+void compare(const DynamicObjects::Object& object, const Geometry& environment, const std::vector<float>& origins,
+             const std::vector<float>& directions, const std::vector<float>& hits, bool has_point, Errors& errors) {
+  const glm::dvec3 o(object.reference);
+  for (std::size_t i = 0; i < origins.size(); i += 4) {
+    if (origins[i + 3] < 0.5F) continue;
+    ++errors.total;
+    if (hits[i + 3] < 0.5F) continue;  // total reflection: this ray leaves nothing
+    const glm::dvec3 x = xyz(&origins[i]), R = glm::normalize(xyz(&directions[i])), l = xyz(&hits[i]);
+    const Hit hit = environment.intersect(x, R, 0, std::numeric_limits<double>::infinity());
+    ++errors.rays;
+    if (hit.instance == nullptr) {
+      ++errors.escaped;
+      continue;
+    }
+    const glm::dvec3 q = x + R * hit.distance, to_q = q - o;
+    const double away = glm::length(to_q), turn = angle_deg(l - o, to_q);
+    const bool hidden = away > 0 && environment.occluded(o, to_q / away, 0, away * (1 - kOffset) - kOffset);
+    errors.direction_deg.push_back(turn);
+    if (hidden)
+      ++errors.hidden;
+    else
+      errors.seen_deg.push_back(turn);
+    if (!has_point) continue;
+    errors.hit_m.push_back(glm::distance(l, q));
+    const double ratio = glm::length(l - o) / static_cast<double>(directions[i + 3]);
+    if (!(std::abs(ratio - 1) < kConverged)) ++errors.unconverged;
+  }
+}
+
+}  // namespace
+
+void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass& forward, const Camera& camera,
+                  const MapSettings& maps, const LookupSettings& lookup, nlohmann::json& out) {
+  const auto make = [&](const char* name) {
+    return gl::Texture::make_2d(name, gl::Format::rgba32f, camera.width, camera.height);
+  };
+  const gl::Texture origin = make("ray origins"), direction = make("ray directions"), hit = make("ray hits");
+  const gl::Texture depth = gl::Texture::make_2d("ray depth", gl::Format::depth32f, camera.width, camera.height);
+  const gl::Framebuffer framebuffer("rays", {&origin, &direction, &hit}, &depth);
+  // What stands before the objects, without a colour.
+  const gl::Program covers(
+      "rays' depth", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/distance_impostors/depth.frag.glsl"});
+  Errors errors;
+  for (const DynamicObjects::Object& object : objects.objects()) {
+    framebuffer.bind();
+    for (int i = 0; i < 3; ++i)
+      framebuffer.clear_color(i, {0, 0, 0, 0});
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    forward.draw_geometry(camera.projection() * camera.world_to_view(), covers, Objects::all);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    objects.draw_report(scene, forward, camera, maps, lookup, object);
+    const Geometry environment(scene, [&](int instance) { return instance != object.instance; });
+    compare(object, environment, origin.read(), direction.read(), hit.read(), lookup.parallax != Parallax::none,
+            errors);
+  }
+  if (errors.total == 0) return;
+  const auto share = [](std::size_t part, std::size_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+  };
+  const std::size_t hits = errors.rays - errors.escaped;
+  out["object_pixels"] = errors.total;
+  out["escaped_share"] = share(errors.escaped, errors.rays);
+  out["hidden_share"] = share(errors.hidden, hits);
+  summarise(errors.direction_deg, "direction_error_deg", out);
+  if (!errors.seen_deg.empty()) {
+    out["direction_error_deg_median_seen"] = quantile(errors.seen_deg, 0.5);
+    out["direction_error_deg_q95_seen"] = quantile(errors.seen_deg, 0.95);
+  }
+  if (lookup.parallax == Parallax::none) return;
+  summarise(errors.hit_m, "hit_error_m", out);
+  if (lookup.parallax == Parallax::impostor) out["unconverged_share"] = share(errors.unconverged, hits);
+}
+
+}  // namespace pellucid::distance_impostors

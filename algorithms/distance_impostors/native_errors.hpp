@@ -1,0 +1,19 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "algorithms/distance_impostors/dynamic_objects.hpp"
+
+namespace pellucid::distance_impostors {
+
+/// Where the objects' rays are taken to hit beside where they hit (Embree), for each pixel that shows an object:
+/// `hit_error_m_mean`, `hit_error_m_median`, `hit_error_m_q95`: between the two points;
+/// `direction_error_deg_…`: between their directions from the reference point, which choose the texel;
+/// `unconverged_share`: of the hits with |l| / |l'| more than 1 % off 1;
+/// `hidden_share`: of the true hits that the reference point does not see; `direction_error_deg_median_seen`: of the
+/// others;
+/// `escaped_share`: of the rays that hit nothing, which all of these leave out.
+void compare_hits(DynamicObjects&, const Scene&, const ForwardPass&, const Camera&, const MapSettings&,
+                  const LookupSettings&, nlohmann::json& out);
+
+}  // namespace pellucid::distance_impostors

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "algorithms/cube_pass.hpp"
+#include "algorithms/distance_impostors/hit_search.hpp"
+
+/// What distance_impostors and its baseline environment_map have in common, apart from how each declares it.
+namespace pellucid::distance_impostors {
+
+/// Bits of a channel of the cube maps: 16 or 32.
+enum class CubeFormat { half, single };
+/// Where the distance is kept.
+enum class DistanceStore { alpha, texture };
+/// When the maps of an object are drawn again.
+enum class Refresh { once, frames, interval, movement };
+/// Where the reference point of an object's maps lies.
+enum class Anchor { object, scene, point };
+
+struct MapSettings {
+  int cube_size = 512;
+  CubeFormat format = CubeFormat::half;
+  DistanceStore store = DistanceStore::texture;
+  CubeLayers layers = CubeLayers::geometry;
+  Anchor anchor = Anchor::object;
+  glm::vec3 anchor_point{0.0F};
+  Refresh refresh = Refresh::frames;
+  int refresh_frames = 1;
+  float refresh_ms = 150;
+  float refresh_distance_m = 0.25F;
+  int mutual = 1;  ///< how often the other objects are drawn into each one's maps
+  int refractor_size = 256;
+};
+
+/// How a ray finds its light in the maps.
+enum class Parallax {
+  none,     ///< classical: by its direction alone
+  box,      ///< where it leaves the box around the opaque objects (Bjorke 2004)
+  sphere,   ///< where it leaves a sphere about the reference point (Bjorke 2004)
+  impostor  ///< where the stored distances say
+};
+struct LookupSettings {
+  Parallax parallax = Parallax::impostor;
+  HitSearch search;
+  int bounces = 2;           ///< refractions
+  int internal = 2;          ///< reflections inside, after which all that is left leaves
+  float proxy_radius_m = 0;  ///< 0: the mean half side of the box
+};
+
+}  // namespace pellucid::distance_impostors
