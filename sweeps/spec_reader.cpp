@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/render_session.hpp"
 #include "algorithms/scene/image.hpp"
+#include "algorithms/scene/toml_reader.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::sweeps {
@@ -14,25 +16,6 @@ namespace {
 
 Position to_position(const toml::source_region& region) {
   return {region.begin.line, region.begin.column};
-}
-
-std::string_view type_name(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "a list";
-    case toml::node_type::string:
-      return "a string";
-    case toml::node_type::integer:
-      return "an integer";
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "a boolean";
-    default:
-      return "a date or time";
-  }
 }
 
 /// Keys in the order of the file; toml++ sorts them by name.
@@ -181,7 +164,11 @@ std::vector<SpecReader::Entry> SpecReader::entries(const toml::table& table) con
     result.push_back({std::move(name), at, &node});
   };
   for (const auto& [key, node] : in_file_order(table)) {
-    const bool group = (key->str() == "scene" || key->str() == "frame") && node->is_table();
+    const auto groups = common_settings();
+    const bool known = key->str() == "scene" || std::any_of(groups.begin(), groups.end(), [&](const CommonSettings& g) {
+                         return g.prefix == key->str();
+                       });
+    const bool group = known && node->is_table();
     if (!group) {
       add(std::string(key->str()), *key, *node);
       continue;

@@ -36,16 +36,14 @@ bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-namespace {
-
-const char* type_name(const toml::node& node) {
+std::string_view type_name(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
       return "a table";
     case toml::node_type::array:
-      return "an array";
+      return "a list";
     case toml::node_type::string:
-      return "a text";
+      return "a string";
     case toml::node_type::integer:
       return "an integer";
     case toml::node_type::floating_point:
@@ -56,6 +54,8 @@ const char* type_name(const toml::node& node) {
       return "a date or time";
   }
 }
+
+namespace {
 
 std::string wrong_type(std::string_view shown, std::string_view wanted, const toml::node& found) {
   return fmt::format("{} must be {}, not {}", shown, wanted, type_name(found));
@@ -224,7 +224,7 @@ void TableReader::boolean(std::string_view key, bool& value) {
 void TableReader::text(std::string_view key, std::string& value, Need need) {
   const toml::node* node = find(key, need);
   if (node == nullptr) return;
-  if (!node->is_string()) fail(place_of(*node), wrong_type(dotted(key), "a text", *node));
+  if (!node->is_string()) fail(place_of(*node), wrong_type(dotted(key), "a string", *node));
   value = node->as_string()->get();
   if (value.empty() && need == Need::required) fail(place_of(*node), fmt::format("{} is empty", dotted(key)));
 }
@@ -249,9 +249,9 @@ std::vector<std::pair<std::string, Place>> TableReader::texts(std::string_view k
   const toml::node* node = find(key, need);
   if (node == nullptr) return result;
   const toml::array* array = node->as_array();
-  if (array == nullptr) fail(place_of(*node), wrong_type(dotted(key), "an array of texts", *node));
+  if (array == nullptr) fail(place_of(*node), wrong_type(dotted(key), "a list of strings", *node));
   for (const toml::node& element : *array) {
-    if (!element.is_string()) fail(place_of(element), wrong_type(dotted(key), "an array of texts", element));
+    if (!element.is_string()) fail(place_of(element), wrong_type(dotted(key), "a list of strings", element));
     result.emplace_back(element.as_string()->get(), place_of(element));
   }
   return result;
@@ -295,10 +295,10 @@ std::vector<TableReader> TableReader::tables(std::string_view key, Need need) {
   const toml::node* node = find(key, need);
   if (node == nullptr) return result;
   const toml::array* array = node->as_array();
-  if (array == nullptr) fail(place_of(*node), wrong_type(dotted(key), "an array of tables", *node));
+  if (array == nullptr) fail(place_of(*node), wrong_type(dotted(key), "a list of tables", *node));
   for (const toml::node& element : *array) {
     const toml::table* inner = element.as_table();
-    if (inner == nullptr) fail(place_of(element), wrong_type(dotted(key), "an array of tables", element));
+    if (inner == nullptr) fail(place_of(element), wrong_type(dotted(key), "a list of tables", element));
     result.emplace_back(*file_, *inner, fmt::format("{}[{}]", dotted(key), result.size()), *targets_);
   }
   return result;

@@ -28,6 +28,8 @@ struct Place {
   int column = 0;
 };
 Place place_of(const toml::node&);
+/// What it is, for an error: "a table", "a string" and so on.
+std::string_view type_name(const toml::node&);
 
 /// The name of the scene file, as errors show it.
 struct SceneFile {

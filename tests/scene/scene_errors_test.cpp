@@ -28,7 +28,7 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
   const Case cases[] = {
       // the file as a whole
       {"!title = \"t\"\n[views\n", "2:7: Error while parsing table header: expected ']', saw '\\n'"},
-      {"!title = 3\n", "1:9: title must be a text, not an integer"},
+      {"!title = 3\n", "1:9: title must be a string, not an integer"},
       {"!description = \"d\"\n", "1:1: 'title' is missing"},
       {"!title = \"t\"\n", "1:1: 'views' is missing"},
       {"!title = \"t\"\n[views]\n", "2:1: views: a scene has at least one view"},
@@ -38,14 +38,14 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
       {"[views.front]\n", "5:1: Error while parsing table header: cannot redefine existing table 'views.front'"},
       {"[views.Front]\n", "5:8: 'Front' is not a name: use lower-case letters, digits and underscores, a letter first"},
       // types, ranges, names
-      {"fov_y_deg = \"wide\"\n", "5:13: views.front.fov_y_deg must be a number, not a text"},
+      {"fov_y_deg = \"wide\"\n", "5:13: views.front.fov_y_deg must be a number, not a string"},
       {"fov_y_deg = 0\n", "5:13: views.front.fov_y_deg = 0 is out of range (0, 179]"},
       {"fov_y_deg = 180.0\n", "5:13: views.front.fov_y_deg = 180 is out of range (0, 179]"},
       {"near_m = nan\n", "5:10: views.front.near_m = nan is out of range [1e-06, 1000000]"},
       {"near_m = inf\n", "5:10: views.front.near_m = inf is out of range [1e-06, 1000000]"},
       {"neer_m = 1\n", "5:1: unknown key 'neer_m' in views.front; did you mean 'near_m'?"},
       {"up = [0, 1]\n", "5:6: views.front.up must have 3 numbers [x, y, z], not 2"},
-      {"up = [0, \"1\", 0]\n", "5:10: views.front.up.y must be a number, not a text"},
+      {"up = [0, \"1\", 0]\n", "5:10: views.front.up.y must be a number, not a string"},
       {"up = 1\n", "5:6: views.front.up must be [x, y, z], not an integer"},
       // numbers that contradict each other
       {"near_m = 5\nfar_m = 2\n", "2:1: views.front: near_m 5 must be below far_m 2"},
@@ -133,7 +133,7 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
        "1\nextinction = 1\n",
        "11:1: 'density' is missing in volume.transfer[0]; is it 'densty'?"},
       {"[volume]\nkind = \"fog\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nextinction = 1\ntransfer = 3\n",
-       "10:12: volume.transfer must be an array of tables, not an integer"},
+       "10:12: volume.transfer must be a list of tables, not an integer"},
       {"[lights.sun]\nkind = \"directional\"\nintensity = 1\nazimuth_deg = 1\n[volume]\nkind = \"fog\"\nlight = "
        "\"sun\"\nrange_m = 2\nextinction = 1\n",
        "11:9: volume.light: 'sun' is no spot light; a volume lies in the space of a spot"},
