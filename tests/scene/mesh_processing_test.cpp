@@ -134,5 +134,40 @@ TEST(Isosurface, LevelOutsideTheDataIsRefused) {
   EXPECT_NE(words.find("level 9 is not between"), std::string::npos) << words;
 }
 
+class MeshKeys : public test::TemporaryFolder {
+ protected:
+  // A tetrahedron without its bottom, and a scene with a mesh of it.
+  std::string scene_with(std::string_view keys) const {
+    write("open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
+    return write("scene.toml",
+                 "title = \"t\"\n[views.v]\neye = [0, 0, 3]\ntarget = [0, 0, 0]\n[meshes.solid]\n" + std::string(keys))
+        .string();
+  }
+};
+
+TEST_F(MeshKeys, CloseAndSubdivide) {
+  const Scene scene = load_scene(scene_with("file = \"open.off\"\nclose_holes = true\nsubdivide = 1\n"));
+  EXPECT_EQ(scene.meshes.at(0).triangles.size(), 16U);
+  EXPECT_EQ(open_edges(scene.meshes[0]), 0U);
+  EXPECT_GT(signed_volume(scene.meshes[0]), 0.0);
+}
+
+TEST_F(MeshKeys, IsosurfaceOfAVolumeFile) {
+  std::string raw;
+  for (const float value : balls(24, {{11, 11, 22, 9}}).values)
+    raw.append(reinterpret_cast<const char*>(&value), sizeof value);
+  write("ball.raw", raw);
+  write("ball.mhd",
+        "ObjectType = Image\nNDims = 3\nDimSize = 24 24 24\nElementSpacing = 1 1 2\nElementType = MET_FLOAT\n"
+        "ElementDataFile = ball.raw\n");
+  const Scene scene = load_scene(scene_with("file = \"ball.mhd\"\nisosurface = 0\nrefine = 2\nfit_m = 1\n"));
+  EXPECT_NEAR(signed_volume(scene.meshes.at(0)), std::numbers::pi / 6.0, 0.02);
+
+  const std::string level = test::message_of([&] { load_scene(scene_with("file = \"ball.mhd\"\nisosurface = 70\n")); });
+  EXPECT_NE(level.find("scene.toml:7:14: level 70 is not between"), std::string::npos) << level;
+  const std::string alone = test::message_of([&] { load_scene(scene_with("file = \"open.off\"\nrefine = 2\n")); });
+  EXPECT_NE(alone.find("refine"), std::string::npos) << alone;
+}
+
 }  // namespace
 }  // namespace pellucid
