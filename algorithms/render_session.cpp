@@ -247,9 +247,10 @@ Image RenderSession::read_color() const {
   return flipped(color.read(), color.width(), color.height(), 4, 4);
 }
 
-SurfaceLayer RenderSession::raster_surfaces() {
+SurfaceLayer RenderSession::raster_surfaces(bool shadow_maps) {
   State& s = *state_;
   s.update_forward();
+  if (shadow_maps) s.forward.update_shadows(s.scene, s.shadow);
   const int width = s.camera.width, height = s.camera.height;
   const gl::Texture color = gl::Texture::make_2d("surface colour", gl::Format::rgba32f, width, height);
   const gl::Texture distance = gl::Texture::make_2d("surface distance", gl::Format::r32f, width, height);
@@ -258,12 +259,15 @@ SurfaceLayer RenderSession::raster_surfaces() {
     const Image metres = flipped(distance.read(), width, height, 1, 1);
     return std::vector<double>(metres.pixels.begin(), metres.pixels.end());
   };
-  if (!s.forward.shadowed()) {
+  if (shadow_maps || !s.forward.shadowed()) {
     const gl::Framebuffer framebuffer("surfaces", {&color, &distance}, &depth);
     framebuffer.bind();
     s.forward.draw_shaded(s.camera, false);
     gl::check("raster_surfaces", s.info->name);
-    return {flipped(color.read(), width, height, 4, 3), read_distance()};
+    SurfaceLayer layer;
+    layer.radiance = flipped(color.read(), width, height, 4, 3);
+    layer.distance_m = read_distance();
+    return layer;
   }
   // Shadow maps err, and the reference must not: it shades the points itself.
   const gl::Texture normal = gl::Texture::make_2d("surface normal", gl::Format::rgba32f, width, height);

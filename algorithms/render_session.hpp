@@ -64,8 +64,9 @@ class RenderSession {
   /// Draws one frame (and prepares if need be).
   void render(gl::PassTimer&);
   Image read_color() const;  ///< RGBA, rows from the top, one texel a pixel
-  /// The surfaces of the shared forward pass, at float precision, for the reference.
-  SurfaceLayer raster_surfaces();
+  /// The surfaces of the shared forward pass, at float precision, for the reference. Their shadows are exact, or, with
+  /// `shadow_maps`, those of the maps that a frame draws at the present settings, errors included.
+  SurfaceLayer raster_surfaces(bool shadow_maps = false);
 
   Scene& scene();
   const Camera& camera() const;

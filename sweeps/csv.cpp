@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "sweeps/metrics/metrics.hpp"
@@ -18,7 +19,10 @@ const Names kTimes{"frame_ms_median", "frame_ms_ci95_low", "frame_ms_ci95_high",
                    "frame_ms_q25",    "frame_ms_q75",      "fps",
                    "frames",          "warmup_frames",     "timing",
                    "clock",           "baseline_drift",    "prepare_s"};
-const Names kReference{"reference_step_error_max", "reference_step_error_mean", "reference_unconverged_share"};
+const Names kReference{
+    "reference_method",    "reference_step_error_max",     "reference_step_error_mean", "reference_unconverged_share",
+    "shadow_pixels_share", "reference_to_exact_flip_mean", "reference_to_exact_rmse"};
+constexpr std::string_view kShadow = "_shadow";
 const Names kProvenance{"gpu_bytes",   "peak_rss_bytes", "device",      "driver",      "commit",
                         "dirty",       "scene_hash",     "shader_hash", "started_utc", "timed_unix_s",
                         "done_unix_s", "wall_s",         "argv",        "repeat",      "frame_ms_samples"};
@@ -67,6 +71,10 @@ Names columns(const std::vector<json>& rows) {
                [](const std::string& name) { return name.starts_with(kPasses); });
   take(passes);
   take(MetricSet().columns(true));
+  Names in_shadow;
+  for (const std::string& name : MetricSet().columns(false))
+    in_shadow.push_back(fmt::format("{}{}", name, kShadow));
+  take(in_shadow);
   take(kReference);
   take(kProvenance);
   result.insert(result.end(), present.begin(), present.end());

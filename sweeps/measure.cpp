@@ -176,6 +176,12 @@ void Measurer::compare(const Point& point, const std::filesystem::path& referenc
   result.row["reference_step_error_max"] = reference->step_error_max;
   result.row["reference_step_error_mean"] = reference->step_error_mean;
   result.row["reference_unconverged_share"] = reference->unconverged_share;
+  result.row["reference_method"] = name(point.reference.method);
+  if (reference->shadow_pixels_share) result.row["shadow_pixels_share"] = *reference->shadow_pixels_share;
+  if (reference->to_exact) {
+    result.row["reference_to_exact_rmse"] = reference->to_exact->at("rmse");
+    result.row["reference_to_exact_flip_mean"] = reference->to_exact->at("flip_mean");
+  }
 }
 
 Measurement Measurer::measure(const Point& point, const std::filesystem::path& references) {

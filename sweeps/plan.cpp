@@ -12,6 +12,7 @@
 #include "sweeps/constraint.hpp"
 #include "sweeps/provenance.hpp"
 #include "sweeps/spec_reader.hpp"
+#include "sweeps/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -25,14 +26,10 @@ constexpr std::size_t kChunk = 4;
   throw InputError(fmt::format("{}:{}:{}: {}", spec.source, at.line, at.column, message));
 }
 
-nlohmann::json to_json(const Value& value) {
-  return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
-}
-
 std::string hash_of(const Point& point) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const auto& [name, value] : point.parameters)
-    parameters[name] = to_json(value);
+    parameters[name] = value_to_json(value);
   nlohmann::json all = {{"version", kPointVersion},
                         {"technique", point.technique},
                         {"parameters", parameters},
@@ -45,8 +42,7 @@ std::string hash_of(const Point& point) {
   const TimingLimits& t = point.timing;
   all["timing"] =
       t.enabled ? nlohmann::json{t.min_samples, t.max_samples, t.max_seconds, t.relative_ci} : nlohmann::json();
-  const ReferenceSettings& r = point.reference;
-  if (!point.metrics.empty()) all["reference"] = {r.raster_surfaces, r.tolerance, r.max_steps};
+  if (!point.metrics.empty()) all["reference"] = to_json(point.reference);
   return sha256_hex(all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).substr(0, 16);
 }
 

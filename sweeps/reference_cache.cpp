@@ -1,14 +1,17 @@
 #include "sweeps/reference_cache.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <span>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "algorithms/scene/hash.hpp"
 #include "gl/error.hpp"
 #include "sweeps/provenance.hpp"
+#include "sweeps/reference_methods.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -34,7 +37,7 @@ std::string pixels_hash(const Reference& reference) {
   return hash.hex();
 }
 
-/// What determines the reference's pixels, but for the raster surfaces, which are hashed as they are.
+/// What determines the exact reference's pixels, but for the surfaces, which are hashed as they are.
 std::string key_of(RenderSession& session, const Point& point) {
   const Camera& camera = session.camera();
   const View& v = camera.view;
@@ -42,9 +45,28 @@ std::string key_of(RenderSession& session, const Point& point) {
   hash.add(fmt::format("{} {} {}x{}", kReferenceVersion, session.scene().content_hash(), camera.width, camera.height));
   hash.add(fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", v.eye.x, v.eye.y, v.eye.z, v.target.x, v.target.y,
                        v.target.z, v.up.x, v.up.y, v.up.z, v.fov_y_deg, v.near_m, v.far_m));
-  hash.add(fmt::format("{} {} {}", point.reference.raster_surfaces ? "raster" : "rays", point.reference.tolerance,
-                       point.reference.max_steps));
+  hash.add(fmt::format("{} {}", point.reference.tolerance, point.reference.max_steps));
   return hash.hex();
+}
+
+/// What determines a CachedReference: the settings, and of the point what a drawn part of it depends on.
+std::string memory_key_of(RenderSession& session, const Point& point) {
+  std::string key = key_of(session, point) + to_json(point.reference).dump();
+  for (const std::string& metric : point.metrics)
+    key += " " + metric;
+  for (const auto& [name, value] : point.parameters) {
+    if (name.starts_with("shadow.")) key += fmt::format(" {}={}", name, to_text(value));
+  }
+  return key;
+}
+
+bool any_marked(const Image& mask) {
+  return std::any_of(mask.pixels.begin(), mask.pixels.end(), [](float m) { return m > 0.5F; });
+}
+
+double marked_share(const Image& mask) {
+  const auto marked = std::count_if(mask.pixels.begin(), mask.pixels.end(), [](float m) { return m > 0.5F; });
+  return static_cast<double>(marked) / static_cast<double>(mask.pixels.size());
 }
 
 }  // namespace
@@ -95,51 +117,73 @@ void ReferenceFiles::write(const std::string& key, const Reference& reference) c
   write_exr(path(key), out, ExrPixel::single);
 }
 
+Reference ReferenceCache::traced(const std::string& key, const std::function<Reference()>& trace) const {
+  const ReferenceFiles files(folder_);
+  if (std::unique_ptr<Reference> found = files.read(key)) return std::move(*found);
+  Reference reference = trace();
+  try {
+    files.write(key, reference);
+  } catch (const RuntimeError& e) {
+    fmt::print(stderr, "warning: the reference is not cached: {}\n", e.what());
+  }
+  return reference;
+}
+
 std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& session, const Point& point,
                                                            const Progress& progress) {
-  std::string memory_key = key_of(session, point);
-  for (const std::string& metric : point.metrics)
-    memory_key += " " + metric;
+  std::string memory_key = memory_key_of(session, point);
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
     if (entry->key != memory_key) continue;
     entries_.splice(entries_.begin(), entries_, entry);
     return entries_.front().reference;
   }
 
+  const ReferenceSettings& settings = point.reference;
+  const SurfaceLayer surfaces = reference_surfaces(session, settings.surfaces);
+  const Camera& camera = session.camera();
+  ReferenceOptions options;
+  options.tolerance = settings.tolerance;
+  options.max_steps = settings.max_steps;
+  options.progress = progress;
   // The forward pass may change without the scene: its very pixels are part of a file's key.
-  const SurfaceLayer surfaces =
-      point.reference.raster_surfaces ? session.raster_surfaces() : trace_surfaces(session.scene(), session.camera());
-  Sha256 hash;
-  hash.add(key_of(session, point));
-  hash.add(bytes_of(surfaces.radiance.pixels));
-  hash.add(std::as_bytes(std::span(surfaces.distance_m)));
-  const std::string file_key = hash.hex();
+  const auto file_key = [&](std::string_view kind) {
+    Sha256 hash;
+    hash.add(kind);
+    hash.add(key_of(session, point));
+    hash.add(bytes_of(surfaces.radiance.pixels));
+    hash.add(std::as_bytes(std::span(surfaces.distance_m)));
+    return hash.hex();
+  };
+  Reference exact =
+      traced(file_key("exact"), [&] { return render_reference(session.scene(), camera, surfaces, options); });
 
-  const ReferenceFiles files(folder_);
-  std::unique_ptr<Reference> reference = files.read(file_key);
-  if (!reference) {
-    ReferenceOptions options;
-    options.tolerance = point.reference.tolerance;
-    options.max_steps = point.reference.max_steps;
-    options.progress = progress;
-    reference = std::make_unique<Reference>(render_reference(session.scene(), session.camera(), surfaces, options));
-    try {
-      files.write(file_key, *reference);
-    } catch (const RuntimeError& e) {
-      fmt::print(stderr, "warning: the reference is not cached: {}\n", e.what());
-    }
+  std::vector<Region> regions;
+  if (any_marked(exact.mask)) regions.push_back({"_mask", exact.mask});
+  std::optional<double> shadow_pixels_share;
+  if (settings.shadow_share > 0) {
+    const Reference unshadowed = traced(file_key("unshadowed"), [&] {
+      return trace_unshadowed(load_again(point.scene, point.parameters), camera, surfaces, options);
+    });
+    Image mask = shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
+    shadow_pixels_share = marked_share(mask);
+    if (any_marked(mask)) regions.push_back({"_shadow", std::move(mask)});
   }
 
-  bool any_masked = false;
-  for (const float m : reference->mask.pixels)
-    any_masked = any_masked || m > 0.5F;
-  ComparisonOptions options;
-  options.metrics = MetricSet(point.metrics);
-  const std::size_t pixels =
-      static_cast<std::size_t>(reference->image.width) * static_cast<std::size_t>(reference->image.height);
-  auto cached = std::make_shared<CachedReference>(CachedReference{
-      Comparison(std::move(reference->image), any_masked ? &reference->mask : nullptr, std::move(options)),
-      reference->step_error_max, reference->step_error_mean, reference->unconverged_share});
+  std::optional<ComparisonResult> to_exact;
+  Image judge = std::move(exact.image);
+  if (settings.method == ReferenceMethod::slices) {
+    Image slices = draw_slices(point.scene, point.parameters, camera.view.name, camera.width, camera.height, settings);
+    ComparisonOptions distance;
+    distance.metrics = MetricSet(std::vector<std::string>{"flip", "rmse"});
+    to_exact = Comparison(std::move(judge), nullptr, std::move(distance)).compare(slices);
+    judge = std::move(slices);
+  }
+  ComparisonOptions comparing;
+  comparing.metrics = MetricSet(point.metrics);
+  const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  auto cached = std::make_shared<CachedReference>(
+      CachedReference{Comparison(std::move(judge), regions, std::move(comparing)), exact.step_error_max,
+                      exact.step_error_mean, exact.unconverged_share, shadow_pixels_share, std::move(to_exact)});
   entries_.push_front({std::move(memory_key), pixels * kBytesPerPixel, cached});
   std::size_t total = 0;
   for (auto entry = entries_.begin(); entry != entries_.end();) {

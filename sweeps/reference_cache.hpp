@@ -5,6 +5,7 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "algorithms/reference/reference.hpp"
@@ -16,10 +17,13 @@ namespace pellucid::sweeps {
 
 /// A reference made ready for comparing, with its own error.
 struct CachedReference {
-  Comparison comparison;
-  double step_error_max = 0;
+  Comparison comparison;      ///< with the regions "_mask" and, where asked for and not empty, "_shadow"
+  double step_error_max = 0;  ///< of the exact one, as are the next two
   double step_error_mean = 0;
   double unconverged_share = 0;
+  std::optional<double> shadow_pixels_share;  ///< of the frame that "_shadow" covers; nothing when it was not asked for
+  /// How far the method's picture lies from the exact reference: rmse and flip_mean; nothing for the exact one itself.
+  std::optional<ComparisonResult> to_exact;
 };
 
 /// References by content, in memory (least recently used go first) and as EXR files in a folder. A file that is
@@ -30,7 +34,8 @@ class ReferenceCache {
   using Progress = std::function<void(double share)>;
   explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// For the session's scene, view and size at this moment.
+  /// For the session's scene, view, size and shadow maps at this moment, which are the point's. What is not traced but
+  /// drawn (the method slices, the surfaces of the forward pass) is drawn anew in each process: it is of the device.
   std::shared_ptr<const CachedReference> get(RenderSession&, const Point&, const Progress&);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -41,6 +46,8 @@ class ReferenceCache {
     std::size_t bytes;
     std::shared_ptr<const CachedReference> reference;
   };
+  Reference traced(const std::string& key, const std::function<Reference()>& trace) const;
+
   std::filesystem::path folder_;
   std::list<Entry> entries_;  // most recently used first
 };

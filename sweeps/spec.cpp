@@ -40,14 +40,31 @@ void read_timing(const SpecReader& read, const toml::table& parent, TimingLimits
 void read_reference(const SpecReader& read, const toml::table& parent, ReferenceSettings& settings) {
   const toml::table* table = read.table(parent, "reference");
   if (table == nullptr) return;
-  read.allow(*table, {"surfaces", "tolerance", "max_steps"}, "reference");
-  std::string surfaces = settings.raster_surfaces ? "raster" : "rays";
-  if (read.text(*table, "surfaces", surfaces)) {
-    read.one_of(*table->get("surfaces"), surfaces, {"raster", "rays"}, "surfaces");
-    settings.raster_surfaces = surfaces == "raster";
+  read.allow(*table, {"method", "slices", "format", "surfaces", "tolerance", "max_steps", "shadow_share"}, "reference");
+  std::string text;
+  if (read.text(*table, "method", text)) {
+    read.one_of(*table->get("method"), text, {"exact", "slices"}, "method");
+    settings.method = text == "exact" ? ReferenceMethod::exact : ReferenceMethod::slices;
+  }
+  if (read.text(*table, "surfaces", text)) {
+    read.one_of(*table->get("surfaces"), text, {"raster", "forward", "rays"}, "surfaces");
+    settings.surfaces = text == "raster"    ? ReferenceSurfaces::raster
+                        : text == "forward" ? ReferenceSurfaces::forward
+                                            : ReferenceSurfaces::rays;
+  }
+  if (read.text(*table, "format", text)) {
+    read.one_of(*table->get("format"), text, {"half", "single"}, "format");
+    settings.format = text == "half" ? SlicesFormat::half : SlicesFormat::single;
+  }
+  read.integer(*table, "slices", 1, 4096, settings.slices);
+  for (const char* key : {"slices", "format"}) {
+    if (table->contains(key) && settings.method != ReferenceMethod::slices) {
+      read.fail(*table->get(key), fmt::format("{} is of method = \"slices\"; the exact reference has none", key));
+    }
   }
   read.real(*table, "tolerance", 1e-9, 1, settings.tolerance);
   read.integer(*table, "max_steps", 64, 1'048'576, settings.max_steps);
+  read.real(*table, "shadow_share", 0, 0.99, settings.shadow_share);
 }
 
 void read_metrics(const SpecReader& read, const toml::table& table, std::vector<std::string>& metrics) {

@@ -8,6 +8,7 @@
 
 #include "algorithms/parameters.hpp"
 #include "sweeps/catalogue.hpp"
+#include "sweeps/reference_settings.hpp"
 
 /// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the catalogue.
 namespace pellucid::sweeps {
@@ -44,13 +45,6 @@ struct TimingLimits {
   int max_samples = 2000;
   double max_seconds = 30;     ///< of sampling, warm-up apart
   double relative_ci = 0.005;  ///< half-width of the 95 % interval of the median over the median
-};
-
-/// Where the reference takes its opaque surfaces from, and how far it refines (algorithms/reference/reference.hpp).
-struct ReferenceSettings {
-  bool raster_surfaces = true;
-  double tolerance = 1e-4;
-  int max_steps = 8192;
 };
 
 struct Size {

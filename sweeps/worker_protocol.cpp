@@ -29,10 +29,7 @@ json point_to_json(const Point& point) {
             {"max_samples", point.timing.max_samples},
             {"max_seconds", point.timing.max_seconds},
             {"relative_ci", point.timing.relative_ci}}},
-          {"reference",
-           {{"raster_surfaces", point.reference.raster_surfaces},
-            {"tolerance", point.reference.tolerance},
-            {"max_steps", point.reference.max_steps}}}};
+          {"reference", to_json(point.reference)}};
 }
 
 Point point_from_json(const json& in) {
@@ -57,8 +54,7 @@ Point point_from_json(const json& in) {
     const json& timing = in.at("timing");
     point.timing = {timing.at("enabled"), timing.at("min_samples"), timing.at("max_samples"), timing.at("max_seconds"),
                     timing.at("relative_ci")};
-    const json& reference = in.at("reference");
-    point.reference = {reference.at("raster_surfaces"), reference.at("tolerance"), reference.at("max_steps")};
+    point.reference = reference_settings(in.at("reference"));
     return point;
   } catch (const json::exception& e) {
     throw RuntimeError(fmt::format("a point that the worker cannot read: {}", e.what()));

@@ -34,6 +34,13 @@ struct Sums {
     symmetric += std::abs(d) / (std::abs(t) + std::abs(r) + kSymmetricEpsilon);
     ++count;
   }
+  void add(const Sums& part) {
+    squared += part.squared;
+    relative += part.relative;
+    absolute += part.absolute;
+    symmetric += part.symmetric;
+    count += part.count;
+  }
 };
 
 }  // namespace
@@ -89,33 +96,43 @@ void put_values(nlohmann::json& row, const ComparisonResult& result) {
 }
 
 struct Comparison::State {
+  /// A Region as one flag a pixel.
+  struct Marked {
+    std::string suffix;
+    std::vector<char> pixels;
+  };
   Image reference;
   ComparisonOptions options;
-  std::vector<char> mask;  ///< one a pixel; empty without a mask
-  double peak = 1;         ///< of PSNR
+  std::vector<Marked> regions;
+  double peak = 1;  ///< of PSNR
   std::optional<FlipReference> flip;
   std::optional<SsimReference> ssim;
 
-  bool inside(int x, int y) const { return mask[size(y) * size(reference.width) + size(x)] != 0; }
-  void set_mask(const Image& image);
+  bool inside(const Marked& region, int x, int y) const {
+    return region.pixels[size(y) * size(reference.width) + size(x)] != 0;
+  }
+  void add_region(const std::string& suffix, const Image& mask);
   std::vector<std::pair<std::string, double>> pixel_values(const Sums&) const;
-  double ssim_mean(const std::vector<double>& map, bool masked) const;
+  double ssim_mean(const std::vector<double>& map, const Marked*) const;
 };
 
-void Comparison::State::set_mask(const Image& image) {
+void Comparison::State::add_region(const std::string& suffix, const Image& image) {
   check_pixels(image, "mask");
   check_same_size(reference, image, "the mask");
+  Marked region{suffix, {}};
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      mask.push_back(image.at(x, y)[0] > 0.5f);
-  if (std::ranges::count(mask, 1) == 0) throw InputError("the mask marks no pixel (none is above 0.5)");
-  if (!ssim) return;
-  for (int y = 0; y < ssim->map_height(); ++y)
-    for (int x = 0; x < ssim->map_width(); ++x)
-      if (inside(x + SsimReference::kRadius, y + SsimReference::kRadius)) return;
-  throw InputError(
-      fmt::format("the mask marks no pixel at least {} from the border, where ssim is defined; leave ssim out",
-                  SsimReference::kRadius));
+      region.pixels.push_back(image.at(x, y)[0] > 0.5f);
+  if (std::ranges::count(region.pixels, 1) == 0) throw InputError("the mask marks no pixel (none is above 0.5)");
+  bool in_windows = !ssim;
+  for (int y = 0; !in_windows && y < ssim->map_height(); ++y)
+    for (int x = 0; !in_windows && x < ssim->map_width(); ++x)
+      in_windows = inside(region, x + SsimReference::kRadius, y + SsimReference::kRadius);
+  if (!in_windows)
+    throw InputError(
+        fmt::format("the mask marks no pixel at least {} from the border, where ssim is defined; leave ssim out",
+                    SsimReference::kRadius));
+  regions.push_back(std::move(region));
 }
 
 std::vector<std::pair<std::string, double>> Comparison::State::pixel_values(const Sums& sums) const {
@@ -129,11 +146,11 @@ std::vector<std::pair<std::string, double>> Comparison::State::pixel_values(cons
           {"psnr", psnr}};
 }
 
-double Comparison::State::ssim_mean(const std::vector<double>& map, bool masked) const {
+double Comparison::State::ssim_mean(const std::vector<double>& map, const Marked* region) const {
   double sum = 0, count = 0;
   for (int y = 0; y < ssim->map_height(); ++y) {
     for (int x = 0; x < ssim->map_width(); ++x) {
-      if (masked && !inside(x + SsimReference::kRadius, y + SsimReference::kRadius)) continue;
+      if (region && !inside(*region, x + SsimReference::kRadius, y + SsimReference::kRadius)) continue;
       sum += map[size(y) * size(ssim->map_width()) + size(x)];
       ++count;
     }
@@ -142,6 +159,10 @@ double Comparison::State::ssim_mean(const std::vector<double>& map, bool masked)
 }
 
 Comparison::Comparison(Image reference, const Image* mask, ComparisonOptions options)
+    : Comparison(std::move(reference), mask ? std::vector<Region>{{"_mask", *mask}} : std::vector<Region>{},
+                 std::move(options)) {}
+
+Comparison::Comparison(Image reference, const std::vector<Region>& regions, ComparisonOptions options)
     : state_(std::make_unique<State>()) {
   check_pixels(reference, "reference");
   if (options.display_encoded && options.exposures)
@@ -159,7 +180,8 @@ Comparison::Comparison(Image reference, const Image* mask, ComparisonOptions opt
     state_->peak = brightest > 0 ? brightest : 1;
   }
   if (o.metrics.has("ssim")) state_->ssim.emplace(r, o.display_encoded);
-  if (mask) state_->set_mask(*mask);
+  for (const Region& region : regions)
+    state_->add_region(region.suffix, region.mask);
   if (o.metrics.has("flip") || o.keep_map) {
     if (o.display_encoded)
       state_->flip = FlipReference::display_encoded(r, o.flip);
@@ -173,7 +195,7 @@ Comparison& Comparison::operator=(Comparison&&) noexcept = default;
 Comparison::~Comparison() = default;
 
 bool Comparison::masked() const {
-  return !state_->mask.empty();
+  return std::ranges::any_of(state_->regions, [](const State::Marked& region) { return region.suffix == "_mask"; });
 }
 
 const Exposures* Comparison::exposures() const {
@@ -186,25 +208,21 @@ ComparisonResult Comparison::compare(const Image& test) const {
   check_same_size(reference, test, "test");
   check_pixels(test, "test");
 
-  Sums frame, object;
+  // The frame, then each region.
+  std::vector<Sums> totals(1 + state_->regions.size());
   for (int y = 0; y < reference.height; ++y) {
     // Sums of rows first: a frame's worth of small terms then loses nothing to rounding.
-    Sums row, row_object;
+    std::vector<Sums> rows(totals.size());
     for (int x = 0; x < reference.width; ++x) {
-      const bool in_object = masked() && state_->inside(x, y);
       for (int c = 0; c < 3; ++c) {
         const double r = channel(reference, reference.at(x, y), c), t = channel(test, test.at(x, y), c);
-        row.add(r, t);
-        if (in_object) row_object.add(r, t);
+        rows[0].add(r, t);
+        for (std::size_t i = 0; i < state_->regions.size(); ++i)
+          if (state_->inside(state_->regions[i], x, y)) rows[i + 1].add(r, t);
       }
     }
-    for (const auto& [total, part] : {std::pair{&frame, &row}, std::pair{&object, &row_object}}) {
-      total->squared += part->squared;
-      total->relative += part->relative;
-      total->absolute += part->absolute;
-      total->symmetric += part->symmetric;
-      total->count += part->count;
-    }
+    for (std::size_t i = 0; i < totals.size(); ++i)
+      totals[i].add(rows[i]);
   }
 
   ComparisonResult result;
@@ -213,24 +231,23 @@ ComparisonResult Comparison::compare(const Image& test) const {
   std::vector<double> ssim_map;
   if (state_->ssim) ssim_map = state_->ssim->map(test);
 
-  for (const bool in_mask : {false, true}) {
-    if (in_mask && !masked()) break;
-    const std::string suffix = in_mask ? "_mask" : "";
+  for (std::size_t i = 0; i < totals.size(); ++i) {
+    const State::Marked* region = i == 0 ? nullptr : &state_->regions[i - 1];
+    const std::string suffix = region ? region->suffix : "";
     if (metrics.has("flip")) {
       std::vector<float> errors;
-      if (in_mask)
-        for (std::size_t i = 0; i < map.pixels.size(); ++i)
-          if (state_->mask[i]) errors.push_back(map.pixels[i]);
-      const FlipStatistics s = pool(in_mask ? errors : map.pixels);
+      for (std::size_t p = 0; region && p < map.pixels.size(); ++p)
+        if (region->pixels[p]) errors.push_back(map.pixels[p]);
+      const FlipStatistics s = pool(region ? errors : map.pixels);
       for (const auto& [name, value] :
            {std::pair{"mean", s.mean}, std::pair{"weighted_median", s.weighted_median},
             std::pair{"weighted_q1", s.weighted_q1}, std::pair{"weighted_q3", s.weighted_q3}, std::pair{"min", s.min},
             std::pair{"max", s.max}})
         result.values.emplace_back(fmt::format("flip_{}{}", name, suffix), value);
     }
-    for (const auto& [name, value] : state_->pixel_values(in_mask ? object : frame))
+    for (const auto& [name, value] : state_->pixel_values(totals[i]))
       if (metrics.has(name)) result.values.emplace_back(name + suffix, value);
-    if (state_->ssim) result.values.emplace_back("ssim" + suffix, state_->ssim_mean(ssim_map, in_mask));
+    if (state_->ssim) result.values.emplace_back("ssim" + suffix, state_->ssim_mean(ssim_map, region));
   }
   if (state_->options.keep_map) result.flip_map = std::move(map);
   return result;

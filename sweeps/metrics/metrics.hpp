@@ -76,16 +76,23 @@ struct ComparisonResult {
 /// Writes each value into the object `row` under its name; an infinite one as null.
 void put_values(nlohmann::json& row, const ComparisonResult&);
 
+/// Marked pixels: those whose first channel is above 0.5.
+struct Region {
+  std::string suffix;  ///< of the names of its values: "_shadow"
+  Image mask;
+};
+
 /// One reference, compared with many tests. What depends on the reference only is computed once, HDR-FLIP's exposures
 /// included, so all tests of a reference share them. Holds a copy of the reference; compare() may be called from
 /// several threads.
 class Comparison {
  public:
-  /// `mask`, if not null, marks the object: pixels whose first channel is above 0.5. Statistics are given for the whole
-  /// frame and for the marked pixels; maps and windows always see the whole frame. Throws InputError: a pixel that is
-  /// not finite (named, with the first one's place), channels other than 1, 3 or 4, a mask of another size or without
-  /// any pixel, a frame too small for SSIM.
+  /// `mask`, if not null, is a region with the suffix "_mask": the object. Statistics are given for the whole frame and
+  /// for the pixels of each region; maps and windows always see the whole frame. Throws InputError: a pixel that is not
+  /// finite (named, with the first one's place), channels other than 1, 3 or 4, a mask of another size or without any
+  /// pixel, a frame too small for SSIM.
   Comparison(Image reference, const Image* mask = nullptr, ComparisonOptions = {});
+  Comparison(Image reference, const std::vector<Region>& regions, ComparisonOptions);
   Comparison(Comparison&&) noexcept;
   Comparison& operator=(Comparison&&) noexcept;
   ~Comparison();
@@ -94,7 +101,7 @@ class Comparison {
   ComparisonResult compare(const Image& test) const;
 
   const Exposures* exposures() const;  ///< HDR-FLIP's; null when FLIP is not computed or is LDR
-  bool masked() const;
+  bool masked() const;                 ///< there is a region "_mask"
 
  private:
   struct State;

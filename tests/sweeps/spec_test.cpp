@@ -79,9 +79,21 @@ reference.surfaces = "rays"
   const RunBlock& b = spec.blocks[1];
   EXPECT_FALSE(b.timing.enabled);
   EXPECT_EQ(b.timing.min_samples, 30);  // the first block's override is its own
-  EXPECT_FALSE(b.reference.raster_surfaces);
+  EXPECT_EQ(b.reference.surfaces, ReferenceSurfaces::rays);
   EXPECT_EQ(b.metrics, std::vector<std::string>{"psnr"});
   EXPECT_EQ(b.sizes.front().width, 720);
+}
+
+TEST(Spec, GroupsNeedNoQuotes) {
+  const Spec spec = parse(
+      "name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['ball']\n[run.axes]\nshadow.size=[64,128]\n"
+      "scene.density=[1,2]\n[run.fixed]\nframe.format='single'\nshadow.blur=2.5\n");
+  const RunBlock& block = spec.blocks.at(0);
+  ASSERT_EQ(block.axes.size(), 2U);
+  EXPECT_EQ(block.axes[0].name, "shadow.size");
+  EXPECT_EQ(block.axes[1].name, "scene.density");
+  ASSERT_EQ(block.fixed.size(), 2U);
+  EXPECT_EQ(block.fixed[1].name, "shadow.blur");
 }
 
 TEST(Spec, AScenesPathCountsFromTheSpec) {

@@ -243,7 +243,7 @@ TEST(PaperSpecs, Table1HasThePapersSixPointsAtThePapersSize) {
       EXPECT_EQ(point.size.height, 540);
       EXPECT_EQ(point.metrics, (Words{"flip", "rmse"}));
       EXPECT_TRUE(point.timing.enabled);
-      EXPECT_TRUE(point.reference.raster_surfaces);
+      EXPECT_EQ(point.reference.surfaces, ReferenceSurfaces::raster);
       EXPECT_EQ(std::get<std::string>(point.parameters.at("frame.format")), "half");
     }
     EXPECT_EQ(points, (decltype(points){{1, 32}, {2, 16}, {4, 8}, {8, 4}, {16, 2}, {32, 1}})) << name;
