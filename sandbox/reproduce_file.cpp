@@ -50,6 +50,11 @@ std::vector<std::string> arguments(const std::string& command, const json& recip
     out.push_back("--surfaces=" + recipe.at("surfaces").get<std::string>());
     out.push_back(fmt::format("--tolerance={}", recipe.at("tolerance").get<double>()));
     out.push_back("--max-steps=" + std::to_string(recipe.at("max_steps").get<std::int64_t>()));
+    for (const auto& [field, option] :
+         {std::pair{"method", "--method="}, std::pair{"slices", "--slices="}, std::pair{"format", "--format="},
+          std::pair{"shadow_share", "--shadow-share="}}) {
+      if (recipe.contains(field)) out.push_back(option + text(recipe.at(field)));
+    }
   }
   for (const auto& [name, value] : recipe.at("parameters").items())
     out.push_back("--set=" + name + "=" + text(value));

@@ -1,6 +1,8 @@
 // pellucid render, reference.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +13,14 @@
 #include <unistd.h>
 
 #include "algorithms/render_session.hpp"
+#include "algorithms/shadow_maps.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sweeps/metrics/metrics.hpp"
 #include "sweeps/provenance.hpp"
+#include "sweeps/reference_methods.hpp"
+#include "sweeps/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -22,13 +28,16 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options {
-  std::string scene, technique, view, size = "720x540", surfaces = "rays";
+  std::string scene, technique, view, size = "720x540";
+  std::string surfaces = "rays", method = "exact", format = "half";  // of a reference
   std::vector<std::string> settings;
   std::filesystem::path output;
   std::optional<int> device;
   DisplayOptions display;
   double tolerance = ReferenceOptions{}.tolerance;
   int max_steps = ReferenceOptions{}.max_steps;
+  int slices = sweeps::ReferenceSettings{}.slices;
+  double shadow_share = 0;
   bool json = false;
 };
 
@@ -53,6 +62,18 @@ ordered_json provenance() {
 
 Attributes attributes(const char* command, const ordered_json& recipe, const ordered_json& origin) {
   return {{"pellucid.command", command}, {"pellucid.recipe", recipe.dump()}, {"pellucid.provenance", origin.dump()}};
+}
+
+/// The scene's volume in numbers; null without one. Where it comes from a file: which of its values are density 0
+/// and 1.
+ordered_json volume_json(const Scene& scene) {
+  if (!scene.volume) return nullptr;
+  const Volume& volume = *scene.volume;
+  const glm::vec3 spacing = volume.voxel_spacing_m();
+  return {{"voxels", {volume.size.x, volume.size.y, volume.size.z}},
+          {"voxel_spacing_m", {spacing.x, spacing.y, spacing.z}},
+          {"extinction_per_m", volume.extinction},
+          {"file_range", {volume.file_range.x, volume.file_range.y}}};
 }
 
 int render(const Options& options) {
@@ -99,6 +120,7 @@ int render(const Options& options) {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     out["peak_rss_bytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+    out["volume"] = volume_json(session.scene());
     out["provenance"] = origin;
     out["output"] = options.output.string();
     fmt::print("{}\n", out.dump(2));
@@ -109,79 +131,140 @@ int render(const Options& options) {
   return kDone;
 }
 
+sweeps::ReferenceSettings reference_settings(const Options& options) {
+  sweeps::ReferenceSettings settings;
+  settings.method = options.method == "exact" ? sweeps::ReferenceMethod::exact : sweeps::ReferenceMethod::slices;
+  settings.surfaces = options.surfaces == "rays"     ? sweeps::ReferenceSurfaces::rays
+                      : options.surfaces == "raster" ? sweeps::ReferenceSurfaces::raster
+                                                     : sweeps::ReferenceSurfaces::forward;
+  settings.format = options.format == "half" ? sweeps::SlicesFormat::half : sweeps::SlicesFormat::single;
+  settings.tolerance = options.tolerance;
+  settings.max_steps = options.max_steps;
+  settings.slices = options.slices;
+  settings.shadow_share = options.shadow_share;
+  return settings;
+}
+
+/// The `-s` of a reference: the scene's parameters, and the shadow maps' where something is drawn with them.
+std::map<std::string, Value> reference_parameters(const Options& options, Scene& scene, bool draws) {
+  std::map<std::string, Value> out;
+  const auto parse = [&](const std::string& full, const std::string& bare, const std::string& text,
+                         const std::string& owner, std::span<const ParameterInfo> infos) {
+    const auto info = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == bare; });
+    if (info == infos.end()) throw unknown_parameter(bare, owner, infos);
+    out[full] = parse_value(*info, text, owner);
+  };
+  for (const std::string& setting : options.settings) {
+    const auto [name, value] = parse_assignment(setting);
+    if (name.starts_with("scene.")) {
+      parse(name, name.substr(6), value, "scene " + scene.name, scene.parameters().infos());
+      scene.parameters().assign(name.substr(6), out[name], "scene " + scene.name);
+    } else if (draws && name.starts_with("shadow.")) {
+      parse(name, name.substr(7), value, "shadow", parameter_table<ShadowSettings>().infos());
+    } else {
+      throw InputError(fmt::format("-s {}: a reference has no technique, so only scene. parameters can be set{}",
+                                   setting,
+                                   draws ? ", and those of the shadow maps (shadow.) that it is drawn with" : ""));
+    }
+  }
+  for (const ParameterInfo& info : scene.parameters().infos())
+    out["scene." + info.name] = scene.parameters().get(info.name);
+  return out;
+}
+
+/// How far the picture of slices lies from the exact reference.
+ordered_json distance(const Image& exact, const Image& slices) {
+  sweeps::ComparisonOptions comparing;
+  comparing.metrics = sweeps::MetricSet(std::vector<std::string>{"flip", "rmse"});
+  const sweeps::ComparisonResult result = sweeps::Comparison(exact, nullptr, std::move(comparing)).compare(slices);
+  return {{"to_exact_flip_mean", result.at("flip_mean")}, {"to_exact_rmse", result.at("rmse")}};
+}
+
 int reference(const Options& options) {
   const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
+  const sweeps::ReferenceSettings settings = reference_settings(options);
+  const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
+  const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
   Scene scene = load_scene(options.scene);
-  for (const std::string& setting : options.settings) {
-    auto [name, value] = parse_assignment(setting);
-    if (!name.starts_with("scene.")) {
-      throw InputError(
-          fmt::format("-s {}: a reference has no technique, so only scene. parameters can be set", setting));
-    }
-    name.erase(0, std::string_view("scene.").size());
-    const ParameterRef table = scene.parameters();
-    const ParameterInfo* info = table.table->find(name);
-    if (info == nullptr) throw unknown_parameter(name, "scene " + scene.name, table.infos());
-    table.assign(name, parse_value(*info, value, "scene " + scene.name), "scene " + scene.name);
-  }
+  const std::map<std::string, Value> parameters = reference_parameters(options, scene, draws);
   const Camera camera{scene.find_view(options.view), size.width, size.height};
-  ReferenceOptions settings;
-  settings.tolerance = options.tolerance;
-  settings.max_steps = options.max_steps;
+  ReferenceOptions tracing;
+  tracing.tolerance = options.tolerance;
+  tracing.max_steps = options.max_steps;
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) {
-    settings.progress = [](double share) { fmt::print(stderr, "\rreference {:3.0f} %", 100 * share); };
+    tracing.progress = [](double share) { fmt::print(stderr, "\rreference {:3.0f} %", 100 * share); };
   }
 
   ordered_json origin = provenance();
   origin["scene_hash"] = scene.content_hash();
   SurfaceLayer surfaces;
-  if (options.surfaces == "raster") {
+  Image slices;
+  if (draws || settings.surfaces == sweeps::ReferenceSurfaces::raster) {
     const gl::Context context({.device = options.device});
-    RenderSession session(load_scene(options.scene), techniques().front().name, options.view, size.width, size.height);
-    for (const std::string& setting : options.settings) {
-      const auto [name, value] = parse_assignment(setting);
-      session.assign_text(name, value);
+    RenderSession session(sweeps::load_again(options.scene, parameters), techniques().front().name, camera.view.name,
+                          size.width, size.height);
+    for (const auto& [name, value] : parameters) {
+      if (name.starts_with("shadow.")) session.assign(name, value);
     }
-    surfaces = session.raster_surfaces();
+    surfaces = sweeps::reference_surfaces(session, settings.surfaces);
+    if (of_slices)
+      slices = sweeps::draw_slices(options.scene, parameters, camera.view.name, size.width, size.height, settings);
     origin["device"] = context.device().renderer;
     origin["driver"] = context.device().version;
   } else {
     surfaces = trace_surfaces(scene, camera);
   }
-  const Reference result = render_reference(scene, camera, surfaces, settings);
-  if (terminal) fmt::print(stderr, "\r");
+  const Reference exact = render_reference(scene, camera, surfaces, tracing);
 
-  ordered_json errors{{"step_error_max", result.step_error_max},
-                      {"step_error_mean", result.step_error_mean},
-                      {"unconverged_share", result.unconverged_share}};
-  nlohmann::json parameters = nlohmann::json::object();
-  for (const ParameterInfo& info : scene.parameters().infos()) {
-    parameters["scene." + info.name] =
-        std::visit([](const auto& v) { return nlohmann::json(v); }, scene.parameters().get(info.name));
-  }
+  ordered_json errors{{"step_error_max", exact.step_error_max},
+                      {"step_error_mean", exact.step_error_mean},
+                      {"unconverged_share", exact.unconverged_share}};
+  nlohmann::json shown = nlohmann::json::object();
+  for (const auto& [name, value] : parameters)
+    shown[name] = sweeps::value_to_json(value);
   ordered_json recipe{
       {"scene", options.scene},         {"view", camera.view.name},     {"width", size.width},
       {"height", size.height},          {"surfaces", options.surfaces}, {"tolerance", options.tolerance},
-      {"max_steps", options.max_steps}, {"parameters", parameters}};
+      {"max_steps", options.max_steps}, {"parameters", shown}};
   ImageFile file;
-  file.image = result.image;
-  file.layers["mask"] = result.mask;
+  file.image = exact.image;
+  file.layers["mask"] = exact.mask;
+  if (of_slices) {
+    recipe["method"] = options.method;
+    recipe["slices"] = options.slices;
+    recipe["format"] = options.format;
+    errors.update(distance(exact.image, slices));
+    file.image = std::move(slices);
+  }
+  if (settings.shadow_share > 0) {
+    recipe["shadow_share"] = settings.shadow_share;
+    const Reference unshadowed =
+        sweeps::trace_unshadowed(sweeps::load_again(options.scene, parameters), camera, surfaces, tracing);
+    file.layers["shadow"] = sweeps::shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
+  }
+  if (terminal) fmt::print(stderr, "\r");
   file.attributes = attributes("reference", recipe, origin);
   file.attributes["pellucid.reference_error"] = errors.dump();
   write_picture(options.output, file, options.display);
   if (options.json) {
     ordered_json out = recipe;
     out.update(errors);
+    out["volume"] = volume_json(scene);
     out["output"] = options.output.string();
     fmt::print("{}\n", out.dump(2));
-  } else {
-    fmt::print(
-        stderr,
-        "{}: reference of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance\n",
-        options.output.string(), options.scene, size.width, size.height, result.step_error_max, result.step_error_mean,
-        100 * result.unconverged_share);
+    return kDone;
+  }
+  fmt::print(stderr,
+             "{}: {} of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance\n",
+             options.output.string(),
+             of_slices ? fmt::format("{} slices in a frame of {} format", options.slices, options.format) : "reference",
+             options.scene, size.width, size.height, exact.step_error_max, exact.step_error_mean,
+             100 * exact.unconverged_share);
+  if (of_slices) {
+    fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", options.output.string(),
+               errors.at("to_exact_flip_mean").get<double>(), errors.at("to_exact_rmse").get<double>());
   }
   return kDone;
 }
@@ -220,8 +303,8 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
       ->add_option(
           "--surfaces", truth->surfaces,
           "rays: surfaces traced with Embree; raster: from the forward pass, so that silhouettes are the same as in a "
-          "rendering and a metric sees the medium alone")
-      ->check(CLI::IsMember({"rays", "raster"}))
+          "rendering, with exact shadows; forward: with its shadow maps too, so that a metric sees the medium alone")
+      ->check(CLI::IsMember({"rays", "raster", "forward"}))
       ->capture_default_str();
   reference_app->add_option("--tolerance", truth->tolerance, "Change of radiance at which a pixel counts as converged")
       ->check(CLI::Range(1e-12, 1.0))
@@ -229,7 +312,32 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
   reference_app->add_option("--max-steps", truth->max_steps, "Most steps along a ray")
       ->check(CLI::Range(2, 1 << 20))
       ->capture_default_str();
-  reference_app->footer("Example: pellucid reference fog_forest --size 360x270 -o truth.exr");
+  CLI::Option* method =
+      reference_app
+          ->add_option("--method", truth->method,
+                       "exact: the medium is integrated; slices: the picture of very many slices that Imagire et al. "
+                       "2007 judge by, with its distance from the exact one")
+          ->check(CLI::IsMember({"exact", "slices"}))
+          ->capture_default_str();
+  reference_app->add_option("--slices", truth->slices, "How many, of --method slices")
+      ->check(CLI::Range(1, 4096))
+      ->needs(method)
+      ->capture_default_str();
+  reference_app->add_option("--format", truth->format, "half or single: what the slices blend into")
+      ->check(CLI::IsMember({"half", "single"}))
+      ->needs(method)
+      ->capture_default_str();
+  reference_app
+      ->add_option("--shadow-share", truth->shadow_share,
+                   "Add a layer `shadow`: the pixels whose luminance the shadows in the medium lower by more than this "
+                   "share")
+      ->check(CLI::Range(0.0, 0.99));
+  reference_app->footer(
+      "Examples:\n"
+      "  pellucid reference fog_forest --size 360x270 -o truth.exr\n"
+      "  pellucid reference fog_forest --method slices --slices 1024 -o slices.exr\n"
+      "  pellucid reference teapot_room --surfaces raster --shadow-share 0.05 -o truth.exr\n"
+      "  pellucid compare truth.exr hulls.exr --mask shadow");
   commands.push_back({reference_app, [truth] { return reference(*truth); }});
 }
 
