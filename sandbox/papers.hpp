@@ -12,16 +12,19 @@ struct PaperPicture {
   std::string_view name;   ///< of its files
   std::string_view label;  ///< in the paper: "(a)"; empty for a picture of our own
   std::string_view technique;
-  std::span<const std::string_view> settings;  ///< name=value
+  std::span<const std::string_view> settings;  ///< name=value, besides those of the set
   std::string_view role;                       ///< one sentence: why it is here
 };
 
-/// A figure of pictures: one view of one scene, drawn several ways and compared with one reference.
+/// A figure of pictures, or the part of one that shows one view of one scene: drawn several ways and compared with one
+/// reference.
 struct PaperPictures {
   std::string_view name;  ///< of its folder: "fig8"
   std::string_view title;
   std::string_view scene;
-  std::string_view view;  ///< empty: the scene's first
+  std::string_view preview_scene;              ///< the same without assets, for a preview; empty: `scene` needs none
+  std::string_view view;                       ///< empty: the scene's first
+  std::span<const std::string_view> settings;  ///< name=value of the scene, for the reference and every picture
   int width = 0, height = 0;
   std::span<const PaperPicture> pictures;
   /// The picture whose FLIP map places the close-up, and how large a window is enlarged.

@@ -89,8 +89,11 @@ std::string device_of(const PaperOutcome& outcome) {
 
 void draw_all_pictures(const PaperOptions& options, const std::filesystem::path& folder, PaperOutcome& outcome) {
   for (const PaperPictures& set : outcome.paper->pictures) {
-    PictureOptions drawing{
-        .folder = folder / "pictures" / set.name, .device = options.device, .made_on = device_of(outcome), .say = {}};
+    PictureOptions drawing{.folder = folder / "pictures" / set.name,
+                           .device = options.device,
+                           .preview = options.preview,
+                           .made_on = device_of(outcome),
+                           .say = {}};
     drawing.say = [&](const std::string& what) {
       fmt::print(stderr, "{}: {}: {}\n", outcome.paper->name, set.name, what);
     };

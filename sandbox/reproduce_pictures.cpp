@@ -1,6 +1,7 @@
 #include "sandbox/reproduce_pictures.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "sweeps/metrics/flip.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/provenance.hpp"
+#include "sweeps/reference_methods.hpp"
 #include "sweeps/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
@@ -103,6 +105,11 @@ ImageFile make(const std::filesystem::path& path, const std::vector<std::string>
   return std::move(*file);
 }
 
+json value_of(const std::string& text) {
+  json value = json::parse(text, nullptr, false);
+  return value.is_discarded() ? json(text) : std::move(value);  // a choice is a bare word
+}
+
 /// Every parameter of the technique as the picture has it.
 json parameters_of(const PaperPicture& picture) {
   json out = json::object();
@@ -110,8 +117,21 @@ json parameters_of(const PaperPicture& picture) {
     out[info.name] = sweeps::value_to_json(info.default_value);
   for (const std::string_view setting : picture.settings) {
     const auto [name, text] = parse_assignment(std::string(setting));
-    json value = json::parse(text, nullptr, false);
-    out[name] = value.is_discarded() ? json(text) : std::move(value);  // a choice is a bare word
+    out[name] = value_of(text);
+  }
+  return out;
+}
+
+/// The settings of the set, which are of the scene alone.
+std::map<std::string, Value> scene_parameters(const PaperPictures& set, Scene scene) {
+  std::map<std::string, Value> out;
+  for (const std::string_view setting : set.settings) {
+    const auto [name, text] = parse_assignment(std::string(setting));
+    const std::string bare = name.substr(std::string_view("scene.").size());
+    const auto infos = scene.parameters().infos();
+    const auto info = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == bare; });
+    assert(info != infos.end() && "a figure sets a parameter that its scene lacks");
+    out[name] = parse_value(*info, text, "scene " + scene.name);
   }
   return out;
 }
@@ -120,10 +140,15 @@ json parameters_of(const PaperPicture& picture) {
 class Drawing {
  public:
   Drawing(const PaperPictures& set, const PictureOptions& options) : set_(set), options_(options) {
-    const Scene scene = load_scene(std::string(set.scene));
+    const std::string_view name = options.preview && !set.preview_scene.empty() ? set.preview_scene : set.scene;
+    const Scene scene = sweeps::load_again(std::string(name), scene_parameters(set, load_scene(std::string(name))));
     out_.name = set.name;
     out_.title = set.title;
-    out_.scene = set.scene;
+    out_.scene = name;
+    for (const std::string_view setting : set.settings) {
+      const auto [field, value] = parse_assignment(std::string(setting));
+      out_.settings_text += fmt::format("{}{} {}", out_.settings_text.empty() ? "" : ", ", field, value);
+    }
     out_.scene_title = scene.title;
     out_.stand_in = scene.stand_in;
     out_.view = scene.find_view(set.view).name;
@@ -148,28 +173,35 @@ class Drawing {
   std::filesystem::path path(const std::string& name) const { return options_.folder / name; }
 
   json place() const {
+    json parameters = json::object();
+    for (const std::string_view setting : set_.settings) {
+      const auto [name, text] = parse_assignment(std::string(setting));
+      parameters[name] = value_of(text);
+    }
     return {{"scene", out_.scene},
             {"view", out_.view},
             {"width", out_.width},
             {"height", out_.height},
-            {"parameters", json::object()}};
+            {"parameters", parameters}};
   }
   void add_place(std::vector<std::string>& command, const std::string& output) const {
+    for (const std::string_view setting : set_.settings)
+      command.insert(command.end(), {"-s", std::string(setting)});
     command.insert(command.end(), {"--view", out_.view, "--size", fmt::format("{}x{}", out_.width, out_.height)});
     if (options_.device) command.insert(command.end(), {"--device", std::to_string(*options_.device)});
     command.insert(command.end(), {"-o", path(output).string()});
   }
 
-  // It takes its surfaces from the forward pass, so that the metrics see the medium alone.
+  // It takes its surfaces from the forward pass, shadow maps and all, so that the metrics see the medium alone.
   void draw_reference() {
     DrawnPicture& reference = out_.reference;
     reference.name = "reference";
     reference.exr = "reference.exr";
-    std::vector<std::string> command{"reference", out_.scene, "--surfaces", "raster"};
+    std::vector<std::string> command{"reference", out_.scene, "--surfaces", "forward"};
     add_place(command, reference.exr);
     reference.repeat = shown(command);
     Wanted wanted{.command = "reference", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
-    wanted.recipe["surfaces"] = "raster";
+    wanted.recipe["surfaces"] = "forward";
     truth_ = make(path(reference.exr), command, wanted, options_, reference);
     const json error = attribute(truth_, "pellucid.reference_error");
     out_.step_error_max = error.value("step_error_max", 0.0);
@@ -195,7 +227,7 @@ class Drawing {
     picture.repeat = shown(command);
     Wanted wanted{.command = "render", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
     wanted.recipe["technique"] = picture.technique;
-    wanted.recipe["parameters"] = parameters_of(recipe);
+    wanted.recipe["parameters"].update(parameters_of(recipe));
     files_.push_back(make(path(picture.exr), command, wanted, options_, picture));
     out_.pictures.push_back(std::move(picture));
   }

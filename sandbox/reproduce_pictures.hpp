@@ -31,6 +31,7 @@ struct DrawnPicture {
 struct DrawnPictures {
   std::string name, title;
   std::string scene, scene_title, stand_in, view;
+  std::string settings_text;  ///< "scene.time_s 5"; empty when the scene is as it is
   int width = 0, height = 0;
   DrawnPicture reference;
   double step_error_max = 0, step_error_mean = 0, unconverged_share = 0;
@@ -44,6 +45,7 @@ struct DrawnPictures {
 struct PictureOptions {
   std::filesystem::path folder;  ///< gets the files; made when missing
   std::optional<int> device;
+  bool preview = false;                         ///< of the set's preview_scene
   std::string made_on;                          ///< keep only files of this device; empty: of any
   std::function<void(const std::string&)> say;  ///< what is being done, one line
 };

@@ -181,11 +181,11 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
   const DrawnPictures& set = outcome.drawn;
   const std::string& folder = outcome.folder;
   section.blocks.emplace_back(Paragraph{fmt::format(
-      "Scene {}, view {}, {}×{} pixels. {}. The metrics compare scene-linear radiance with the reference over the "
-      "whole "
-      "frame; FLIP is HDR-FLIP at 67 pixels per degree. Both take the opaque surfaces from the same raster pass, so "
-      "that they see the medium alone.",
-      set.scene, set.view, set.width, set.height,
+      "Scene {}, view {}{}, {}×{} pixels. {}. The metrics compare scene-linear radiance with the reference over the "
+      "whole frame; FLIP is HDR-FLIP at 67 pixels per degree. Both take the opaque surfaces from the same forward "
+      "pass, "
+      "shadow maps included, so that they see the medium alone.",
+      set.scene, set.view, set.settings_text.empty() ? "" : ", " + set.settings_text, set.width, set.height,
       set.stand_in.empty() ? set.scene_title : fmt::format("{}: {}", set.scene_title, set.stand_in))});
   std::vector<const DrawnPicture*> all;
   for (const DrawnPicture& picture : set.pictures)
