@@ -9,7 +9,7 @@ namespace {
 class DistanceImpostors final : public Technique {
  public:
   ParameterRef parameters() override { return bind_parameters(parameters_); }
-  void prepare(const Scene& scene) override { localized_.prepare(scene, maps(), lookup()); }
+  void prepare(const Scene& scene) override { localized_.prepare(scene, maps(), lookup(), caustics()); }
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
     localized_.render(scene, camera, forward, target, timer, maps(), lookup());
@@ -40,6 +40,14 @@ class DistanceImpostors final : public Technique {
             .bounces = p.bounces,
             .internal = p.internal_reflections,
             .proxy_radius_m = 0};
+  }
+  CausticSettings caustics() const {
+    const Parameters& p = parameters_;
+    return {.enabled = p.caustics,
+            .map_size = p.caustic_size,
+            .light_map_size = p.light_map_size,
+            .sigma_texels = p.splat_sigma,
+            .every_frame = p.caustic_refresh == CausticRefresh::every_frame};
   }
 
   Parameters parameters_;

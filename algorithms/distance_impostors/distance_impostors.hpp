@@ -9,6 +9,8 @@
 /// szirmaykalos2005).
 namespace pellucid::distance_impostors {
 
+enum class CausticRefresh { changed, every_frame };
+
 struct Parameters {
   int iterations = 2;
   Scheme scheme = Scheme::false_position;
@@ -27,6 +29,11 @@ struct Parameters {
   int bounces = 2;
   int refractor_size = 256;
   int internal_reflections = 2;
+  bool caustics = false;
+  int caustic_size = 64;
+  int light_map_size = 256;
+  float splat_sigma = 1;
+  CausticRefresh caustic_refresh = CausticRefresh::every_frame;
 
   static constexpr void parameters(auto& self, auto&& visit) {
     visit(PARAM(iterations), {.symbol = "NITER",
@@ -104,6 +111,29 @@ struct Parameters {
                                         .doc = "reflections inside an object, after which all that is left leaves; "
                                                "with 2 bounces",
                                         .when = Change::program});
+    visit(PARAM(caustics), {.cite = "Sec. 5",
+                            .doc = "land the light of shadow-casting lights that the objects send on",
+                            .when = Change::precompute});
+    visit(PARAM(caustic_size), {.range = {32, 1024},
+                                .cite = "Sec. 5",
+                                .doc = "width and height of the photon map that a light sees an object through",
+                                .when = Change::precompute,
+                                .unit = "texels"});
+    visit(PARAM(light_map_size), {.range = {32, 2048},
+                                  .cite = "Sec. 5",
+                                  .doc = "width and height of a receiver's light map",
+                                  .when = Change::precompute,
+                                  .unit = "texels"});
+    visit(PARAM(splat_sigma), {.symbol = "σ",
+                               .range = {0.25, 16},
+                               .cite = "Sec. 5",
+                               .doc = "standard deviation of the Gaussian that a photon is splatted as",
+                               .when = Change::precompute,
+                               .unit = "texels"});
+    visit(PARAM(caustic_refresh), {.cite = "Sec. 6",
+                                   .doc = "trace photons only when lights, objects or maps changed, or in every frame",
+                                   .when = Change::precompute,
+                                   .choices = "changed|every_frame"});
   }
 };
 static_assert(well_formed<Parameters>());

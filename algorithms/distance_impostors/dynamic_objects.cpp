@@ -67,9 +67,7 @@ void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bo
     const Bounds bounds = mesh_bounds(mesh);
     middles_[instance.mesh] = 0.5F * (bounds.min + bounds.max);
     if (!refractors || material_of(scene, object).kind != SurfaceKind::dielectric) continue;
-    const gl::Format format = settings.format == CubeFormat::half ? gl::Format::rgba16f : gl::Format::rgba32f;
-    const auto [at, made] =
-        refractors_.try_emplace(instance.mesh, mesh, settings.refractor_size, format, settings.layers);
+    const auto [at, made] = refractors_.try_emplace(instance.mesh, mesh, settings.refractor_size, settings.layers);
     object.refractor = &at->second;
     if (made && !at->second.shape().exact()) warnings_.push_back(describe(mesh.name, at->second.shape()));
   }

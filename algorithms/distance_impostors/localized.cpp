@@ -9,16 +9,20 @@
 
 namespace pellucid::distance_impostors {
 
-void Localized::prepare(const Scene& scene, const MapSettings& maps, const LookupSettings& lookup) {
+void Localized::prepare(const Scene& scene, const MapSettings& maps, const LookupSettings& lookup,
+                        const CausticSettings& caustics) {
   frame_.reset();
   objects_.prepare(scene, maps, lookup.bounces > 1, technique_);
   for (const std::string& warning : objects_.warnings())
     fmt::print(stderr, "warning: {}\n", warning);
+  caustic_settings_ = caustics;
+  caustics_.prepare(scene, caustics, maps, objects_);
 }
 
 void Localized::render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
                        gl::PassTimer& timer, const MapSettings& maps, const LookupSettings& lookup) {
-  if (const std::vector<std::size_t> due = objects_.due(scene, maps); !due.empty()) {
+  const std::vector<std::size_t> due = objects_.due(scene, maps);
+  if (!due.empty()) {
     auto pass = timer.pass("cube maps");
     gl::PassTimer& cost = objects_.cost_timer();
     cost.begin_frame();
@@ -26,10 +30,15 @@ void Localized::render(const Scene& scene, const Camera& camera, ForwardPass& fo
     objects_.draw_mutual(scene, forward, maps, lookup, due);
     cost.end_frame();
   }
+  if (caustic_settings_.enabled) {
+    auto pass = timer.pass("caustics");
+    caustics_.update(scene, forward, objects_, maps, lookup, due);
+  }
   {
     auto pass = timer.pass("opaque");
     target.framebuffer.bind();
     forward.draw_shaded(camera, false);
+    caustics_.draw(scene, camera);
   }
   {
     auto pass = timer.pass("objects");
@@ -46,9 +55,12 @@ void Localized::native_errors(nlohmann::json& out) const {
     out["cube_ms"] = each;
     out["cube_ms_per_frame"] = cost.total_ms / static_cast<double>(cost.frames);
   }
-  if (!objects_.warnings().empty()) out["warnings"] = fmt::format("{}", fmt::join(objects_.warnings(), "; "));
-  if (frame_)
-    compare_hits(objects_, *frame_->scene, *frame_->forward, frame_->camera, frame_->maps, frame_->lookup, out);
+  std::vector<std::string> warnings = objects_.warnings();
+  warnings.insert(warnings.end(), caustics_.warnings().begin(), caustics_.warnings().end());
+  if (!warnings.empty()) out["warnings"] = fmt::format("{}", fmt::join(warnings, "; "));
+  if (!frame_) return;
+  if (caustic_settings_.enabled) compare_caustics(caustics_, *frame_->scene, out);
+  compare_hits(objects_, *frame_->scene, *frame_->forward, frame_->camera, frame_->maps, frame_->lookup, out);
 }
 
 }  // namespace pellucid::distance_impostors

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "algorithms/distance_impostors/caustics.hpp"
 #include "algorithms/distance_impostors/dynamic_objects.hpp"
 #include "algorithms/technique.hpp"
 
@@ -15,11 +16,11 @@ class Localized {
  public:
   explicit Localized(const char* technique) : technique_(technique) {}
 
-  void prepare(const Scene&, const MapSettings&, const LookupSettings&);
+  void prepare(const Scene&, const MapSettings&, const LookupSettings&, const CausticSettings& = {});
   void render(const Scene&, const Camera&, ForwardPass&, const Target&, gl::PassTimer&, const MapSettings&,
               const LookupSettings&);
   void native_errors(nlohmann::json&) const;
-  std::string reload_shaders() { return objects_.reload_shaders(); }
+  std::string reload_shaders() { return objects_.reload_shaders() + caustics_.reload_shaders(); }
 
  private:
   // The last frame, for native_errors().
@@ -32,6 +33,8 @@ class Localized {
   };
   const char* technique_;
   mutable DynamicObjects objects_;
+  CausticSettings caustic_settings_;
+  Caustics caustics_;
   std::optional<Frame> frame_;
 };
 

@@ -8,7 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algorithms/reference/geometry.hpp"
+#include "algorithms/reference/interfaces.hpp"
+#include "algorithms/reference/photons.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {
@@ -46,7 +47,7 @@ glm::dvec3 xyz(const float* texel) {
 }
 
 // One object's pixels. The environment is everything but the object itself, as in its maps.
-void compare(const DynamicObjects::Object& object, const Geometry& environment, const std::vector<float>& origins,
+void compare(const DynamicObjects::Object& object, const InterfaceTracer& tracer, const std::vector<float>& origins,
              const std::vector<float>& directions, const std::vector<float>& hits, bool has_point, Errors& errors) {
   const glm::dvec3 o(object.reference);
   for (std::size_t i = 0; i < origins.size(); i += 4) {
@@ -54,15 +55,16 @@ void compare(const DynamicObjects::Object& object, const Geometry& environment, 
     ++errors.total;
     if (hits[i + 3] < 0.5F) continue;  // total reflection: this ray leaves nothing
     const glm::dvec3 x = xyz(&origins[i]), R = glm::normalize(xyz(&directions[i])), l = xyz(&hits[i]);
-    const Hit hit = environment.intersect(x, R, 0, std::numeric_limits<double>::infinity());
+    const InterfaceHit hit = tracer.nearest_without(x, R, object.instance);
     ++errors.rays;
-    if (hit.instance == nullptr) {
+    if (!hit) {
       ++errors.escaped;
       continue;
     }
-    const glm::dvec3 q = x + R * hit.distance, to_q = q - o;
+    const glm::dvec3 q = x + R * hit.distance_m, to_q = q - o;
     const double away = glm::length(to_q), turn = angle_deg(l - o, to_q);
-    const bool hidden = away > 0 && environment.occluded(o, to_q / away, 0, away * (1 - kOffset) - kOffset);
+    const bool hidden =
+        away > 0 && tracer.nearest_without(o, to_q / away, object.instance).distance_m < away * (1 - kOffset) - kOffset;
     errors.direction_deg.push_back(turn);
     if (hidden)
       ++errors.hidden;
@@ -88,6 +90,7 @@ void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass
   // What stands before the objects, without a colour.
   const gl::Program covers(
       "rays' depth", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/distance_impostors/depth.frag.glsl"});
+  const InterfaceTracer tracer(scene);
   Errors errors;
   for (const DynamicObjects::Object& object : objects.objects()) {
     framebuffer.bind();
@@ -97,9 +100,7 @@ void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass
     forward.draw_geometry(camera.projection() * camera.world_to_view(), covers, Objects::all);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     objects.draw_report(scene, forward, camera, maps, lookup, object);
-    const Geometry environment(scene, [&](int instance) { return instance != object.instance; });
-    compare(object, environment, origin.read(), direction.read(), hit.read(), lookup.parallax != Parallax::none,
-            errors);
+    compare(object, tracer, origin.read(), direction.read(), hit.read(), lookup.parallax != Parallax::none, errors);
   }
   if (errors.total == 0) return;
   const auto share = [](std::size_t part, std::size_t whole) {
@@ -117,6 +118,19 @@ void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass
   if (lookup.parallax == Parallax::none) return;
   summarise(errors.hit_m, "hit_error_m", out);
   if (lookup.parallax == Parallax::impostor) out["unconverged_share"] = share(errors.unconverged, hits);
+}
+
+void compare_caustics(const Caustics& caustics, const Scene& scene, nlohmann::json& out) {
+  PhotonOptions options;
+  options.photons = std::uint64_t{1} << 18U;
+  const Photons photons = trace_photons(scene, {}, options);
+  const auto mean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; };
+  const double landed = caustics.landed_w(), reference = mean(photons.landed.mean);
+  out["caustic_landed_w"] = landed;
+  out["caustic_reference_w"] = reference;
+  // Channels err alike: the mean of the errors bounds the error of the mean.
+  out["caustic_reference_standard_error_w"] = mean(photons.landed.standard_error);
+  if (reference > 0) out["caustic_energy_ratio"] = landed / reference;
 }
 
 }  // namespace pellucid::distance_impostors

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "algorithms/distance_impostors/caustics.hpp"
 #include "algorithms/distance_impostors/dynamic_objects.hpp"
 
 namespace pellucid::distance_impostors {
@@ -15,5 +16,10 @@ namespace pellucid::distance_impostors {
 /// `escaped_share`: of the rays that hit nothing, which all of these leave out.
 void compare_hits(DynamicObjects&, const Scene&, const ForwardPass&, const Camera&, const MapSettings&,
                   const LookupSettings&, nlohmann::json& out);
+
+/// The light in the light maps beside what photon tracing lands on opaque surfaces (mean of the channels):
+/// `caustic_landed_w`, `caustic_reference_w` with its `caustic_reference_standard_error_w`, and the
+/// `caustic_energy_ratio` of the first two.
+void compare_caustics(const Caustics&, const Scene&, nlohmann::json& out);
 
 }  // namespace pellucid::distance_impostors

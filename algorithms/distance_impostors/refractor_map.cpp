@@ -18,10 +18,10 @@ struct Unmoved {
 
 }  // namespace
 
-RefractorMap::RefractorMap(const Mesh& mesh, int size, gl::Format format, CubeLayers layers)
+RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
     : center_(choose_center(mesh)),
       shape_(measure_star_shape(mesh, center_)),
-      map_(gl::Texture::make_cube("refractor map of " + mesh.name, format, size)) {
+      map_(gl::Texture::make_cube("refractor map of " + mesh.name, gl::Format::rgba32f, size)) {
   // One object alone leaves a vertex shader nothing to win.
   const CubeLayers pass = layers == CubeLayers::vertex ? CubeLayers::geometry : layers;
   std::vector<Vertex> vertices(mesh.positions.size());

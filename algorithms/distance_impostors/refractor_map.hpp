@@ -8,10 +8,11 @@
 namespace pellucid::distance_impostors {
 
 /// Distance of an object's surface from its centre, and the outward normal there, in every direction (Szirmay-Kalos et
-/// al. 2005, Sec. 4). Kept in the mesh's own space, so that it is made once for a mesh, however it moves.
+/// al. 2005, Sec. 4), in 32-bit floats since refraction magnifies the error of a normal. Kept in the mesh's own space,
+/// so that it is made once for a mesh, however it moves.
 class RefractorMap {
  public:
-  RefractorMap(const Mesh&, int size, gl::Format, CubeLayers);
+  RefractorMap(const Mesh&, int size, CubeLayers);
 
   void bind() const { map_.bind(6); }
   const gl::Texture& texture() const { return map_; }
