@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace pellucid::sweeps {
 namespace {
@@ -70,7 +71,8 @@ Interval bootstrap_median_interval(std::span<const double> sorted, double confid
 TimingSummary summarise(std::span<const double> samples_ms) {
   std::vector<double> sorted(samples_ms.begin(), samples_ms.end());
   std::sort(sorted.begin(), sorted.end());
-  return {quantile(sorted, 0.5), bootstrap_median_interval(sorted), quantile(sorted, 0.25), quantile(sorted, 0.75)};
+  return {quantile(sorted, 0.5), bootstrap_median_interval(sorted), quantile(sorted, 0.25), quantile(sorted, 0.75),
+          std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size())};
 }
 
 void WarmUp::add(double frame_ms) {

@@ -28,6 +28,7 @@ struct TimingSummary {
   double median_ms = 0;
   Interval ci95_ms;
   double q25_ms = 0, q75_ms = 0;
+  double mean_ms = 0;  ///< what work done every n-th frame costs a frame; the median does not see it
 };
 TimingSummary summarise(std::span<const double> samples_ms);
 
