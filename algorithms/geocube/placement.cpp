@@ -1,0 +1,175 @@
+#include "algorithms/geocube/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "algorithms/geocube/cubes.hpp"
+#include "algorithms/scene/noise.hpp"
+#include "gl/error.hpp"
+
+namespace pellucid::geocube {
+namespace {
+
+using Flags = std::vector<char>;  // by triangle
+
+class Chooser {
+ public:
+  Chooser(const Solid& solid, const PlacementOptions& options)
+      : solid_(solid), options_(options), random_(options.seed), order_(solid.triangle_count()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    for (std::size_t i = order_.size(); i > 1; --i)
+      std::swap(order_[i - 1], order_[static_cast<std::size_t>(random_.below(static_cast<int>(i)))]);
+    const auto wanted = static_cast<std::size_t>(options_.candidates);
+    add_between_walls(order_, wanted / 2);
+    for (std::size_t tries = 0; candidates_.size() < wanted && tries < 100 * wanted; ++tries) {
+      const glm::dvec3 at(random_.next(), random_.next(), random_.next());
+      add_candidate(solid_.low() + at * (solid_.high() - solid_.low()));
+    }
+  }
+
+  std::vector<glm::dvec3> choose() {
+    while (centers_.size() < static_cast<std::size_t>(options_.cubes)) {
+      const std::vector<std::uint32_t> open = unseen(centers_.size());
+      if (!centers_.empty()) add_between_walls(open, static_cast<std::size_t>(options_.candidates) / 4);
+      const std::vector<double> gains = gains_of(candidates_, open);
+      const auto best = std::max_element(gains.begin(), gains.end());
+      if (best == gains.end() || *best <= 0) break;
+      centers_.push_back(candidates_[static_cast<std::size_t>(best - gains.begin())]);
+      seen_.push_back(seen_from(centers_.back()));
+      for (std::size_t i = centers_.size(); i-- > 0;)  // the newest first, then those that it relieves
+        improve(i);
+      double area = solid_.area();
+      for (const std::uint32_t t : unseen(centers_.size(), order_.size()))
+        area -= solid_.area(t);
+      if (area >= options_.enough * solid_.area()) break;
+    }
+    return centers_;
+  }
+
+ private:
+  // Midway between opposite walls, as seen from some of the triangles: this finds the middle of ears and limbs.
+  void add_between_walls(const std::vector<std::uint32_t>& triangles, std::size_t count) {
+    const double nudge = 1e-5 * solid_.diagonal();
+    for (std::size_t i = 0; i < count && !triangles.empty(); ++i) {
+      const std::uint32_t t = triangles[i * triangles.size() / count];
+      const glm::dvec3 normal = solid_.facet_normal(t);
+      const glm::dvec3 tilt(random_.range(-1, 1), random_.range(-1, 1), random_.range(-1, 1));
+      const glm::dvec3 inwards = glm::normalize((i % 2 == 0 ? 0.0 : 0.5) * tilt - normal);
+      const glm::dvec3 from = solid_.centroid(t) - nudge * normal;
+      const auto hit = solid_.first_hit(from, inwards);
+      if (hit && hit->leaves) add_candidate(from + (i % 2 == 0 ? 0.5 : 0.8) * hit->distance * inwards);
+    }
+  }
+
+  bool usable(const glm::dvec3& p) const {
+    return solid_.contains(p) && solid_.tree().nearest(p).distance > 1e-4 * solid_.diagonal();
+  }
+  void add_candidate(const glm::dvec3& p) {
+    if (usable(p)) candidates_.push_back(p);
+  }
+
+  Flags seen_from(const glm::dvec3& center) const {
+    Flags flags(solid_.triangle_count());
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(flags.size()), 512),
+                      [&](const auto& range) {
+                        for (std::uint32_t t = range.begin(); t != range.end(); ++t)
+                          flags[t] = solid_.sees(center, t) ? 1 : 0;
+                      });
+    return flags;
+  }
+
+  // Triangles that none of the centres sees, number `except` left out; the first `most` in random order.
+  std::vector<std::uint32_t> unseen(std::size_t except, std::size_t most) const {
+    std::vector<std::uint32_t> result;
+    for (const std::uint32_t t : order_) {
+      bool any = false;
+      for (std::size_t i = 0; i < seen_.size() && !any; ++i)
+        any = i != except && seen_[i][t] != 0;
+      if (any) continue;
+      result.push_back(t);
+      if (result.size() == most) break;
+    }
+    return result;
+  }
+  std::vector<std::uint32_t> unseen(std::size_t except) const {
+    return unseen(except, static_cast<std::size_t>(options_.samples));
+  }
+
+  // The area that each place sees of the triangles.
+  std::vector<double> gains_of(const std::vector<glm::dvec3>& places,
+                               const std::vector<std::uint32_t>& triangles) const {
+    std::vector<double> gains(places.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 4), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        for (const std::uint32_t t : triangles)
+          gains[i] += solid_.sees(places[i], t) ? solid_.area(t) : 0;
+      }
+    });
+    return gains;
+  }
+
+  // Moves one centre to better places near it.
+  void improve(std::size_t i) {
+    constexpr std::size_t kMoves = 16;
+    const std::vector<std::uint32_t> open = unseen(i);
+    double most = gains_of({centers_[i]}, open).front();
+    bool moved = false;
+    for (double reach = 0.08 * solid_.diagonal(); reach > 0.004 * solid_.diagonal(); reach *= 0.5) {
+      std::vector<glm::dvec3> moves;
+      for (std::size_t m = 0; m < kMoves; ++m) {
+        const glm::dvec3 step(random_.range(-1, 1), random_.range(-1, 1), random_.range(-1, 1));
+        if (usable(centers_[i] + reach * step)) moves.push_back(centers_[i] + reach * step);
+      }
+      const std::vector<double> gains = gains_of(moves, open);
+      const auto best = std::max_element(gains.begin(), gains.end());
+      if (best == gains.end() || *best <= most) continue;
+      most = *best;
+      centers_[i] = moves[static_cast<std::size_t>(best - gains.begin())];
+      moved = true;
+    }
+    if (moved) seen_[i] = seen_from(centers_[i]);
+  }
+
+  const Solid& solid_;
+  const PlacementOptions& options_;
+  Random random_;
+  std::vector<std::uint32_t> order_;  // the triangles, shuffled
+  std::vector<glm::dvec3> candidates_, centers_;
+  std::vector<Flags> seen_;  // by centre
+};
+
+}  // namespace
+
+Placement place_cubes(const Solid& solid, const PlacementOptions& options) {
+  if (options.cubes < 1 || options.cubes > static_cast<int>(kMaxCubes))
+    throw InputError(fmt::format("geocube: cubes = {} is out of range [1, {}]", options.cubes, kMaxCubes));
+  Placement result;
+  result.centers = Chooser(solid, options).choose();
+  if (result.centers.empty()) throw InputError(fmt::format("geocube: mesh '{}' is too thin for a cube", solid.name()));
+
+  std::vector<std::uint8_t> first(solid.triangle_count());
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(first.size()), 256),
+                    [&](const auto& range) {
+                      for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
+                        first[t] = kUnseen;
+                        for (std::size_t i = 0; i < result.centers.size() && first[t] == kUnseen; ++i) {
+                          if (solid.sees(result.centers[i], t)) first[t] = static_cast<std::uint8_t>(i);
+                        }
+                      }
+                    });
+  result.unseen.assign(result.centers.size(), 1.0);
+  for (std::size_t i = 0; i < result.centers.size(); ++i) {
+    double area = 0;
+    for (std::uint32_t t = 0; t < solid.triangle_count(); ++t)
+      area += first[t] > i ? solid.area(t) : 0;
+    result.unseen[i] = area / solid.area();
+  }
+  return result;
+}
+
+}  // namespace pellucid::geocube

@@ -1,0 +1,203 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <glm/glm.hpp>
+
+#include "algorithms/geocube/cubes.hpp"
+
+/// Where a ray leaves the solid, by the geocube: Chan and Wang 2005, Sec. 2.2 and 2.3 and the appendix (references.bib:
+/// chan2005). search.glsl is the same in GLSL; both work in single precision, in the mesh's space.
+namespace pellucid::geocube {
+
+/// "Never": farther than any step.
+inline constexpr float kFar = 1e30F;
+
+/// C*(μ, γ): from a point on a cone's axis at distance 1 from the apex to the side wall, for a ray that makes an angle
+/// of cosine γ with the direction *to* the apex; μ the cosine of the half-apex angle. kFar where the ray never meets
+/// the wall ahead.
+inline float cone_wall(float mu, float gamma) {
+  const float sine = std::sqrt(std::max(0.0F, 1.0F - mu * mu));
+  const float below = gamma * sine + mu * std::sqrt(std::max(0.0F, 1.0F - gamma * gamma));
+  return below > 1e-9F ? sine / below : kFar;
+}
+
+/// C(f, h, a, n, μ) of a cone of height 1 from a point on its axis at distance f from the base's centre, by its dot
+/// products: h the ray, a the axis from apex to base, n the base's normal.
+inline float cone_step(float f, float h_a, float h_n, float a_n, float mu) {
+  const float wall = (1.0F - f) * cone_wall(mu, -h_a);
+  if (h_n <= 0.0F) return wall;
+  const float base = f * a_n / h_n;
+  return h_a < mu ? std::min(wall, base) : base;
+}
+
+/// S*(f, γ): from a point at distance f from the centre of the unit sphere to the sphere, γ the cosine between the ray
+/// and the direction from the centre.
+inline float sphere_step(float f, float gamma) {
+  return std::sqrt(std::max(0.0F, 1.0F - f * f * (1.0F - gamma * gamma))) - f * gamma;
+}
+
+/// What a cube map tells for a direction.
+struct CubeSample {
+  glm::vec4 bounds{0.0F};  ///< d, cos θ_A, cos θ_B, R_C
+  glm::vec4 plane{0.0F};   ///< N, not of unit length between texels
+};
+
+/// The cube maps as a shader samples them.
+class CubeMaps {
+ public:
+  explicit CubeMaps(const CubeSet& set) : set_(&set), grid_(set.grid()) {}
+  int count() const { return static_cast<int>(set_->cubes.size()); }
+  glm::vec3 center(int cube) const { return glm::vec3(set_->cubes[static_cast<std::size_t>(cube)].center); }
+  float sphere(int cube) const { return set_->cubes[static_cast<std::size_t>(cube)].sphere; }
+  CubeSample fetch(int cube, const glm::vec3& direction) const {
+    const CubeLayer& layer = set_->cubes[static_cast<std::size_t>(cube)].layers.front();
+    const CubeGrid::Sample at = grid_.sample(glm::dvec3(direction));
+    CubeSample result;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto weight = static_cast<float>(at.weight[k]);
+      if (weight == 0.0F) continue;
+      result.bounds += weight * layer.bounds[at.index[k]];
+      result.plane += weight * layer.planes[at.index[k]];
+    }
+    return result;
+  }
+
+ private:
+  const CubeSet* set_;
+  CubeGrid grid_;
+};
+
+struct SearchOptions {
+  int iterations = 10;  ///< the bound on steps
+  float min_step = 0;   ///< δ, a length; above 0
+  int refine = 2;       ///< tangent-plane steps from the point found back to the surface; 0 as in the paper
+  int switches =
+      1;  ///< other cubes asked before a point counts as outside, in the plane rule's order; 1 as in the paper
+  float cosine_c = 0.745F;  ///< of cone C's half-angle
+};
+
+struct Exit {
+  glm::vec3 point{0.0F};
+  glm::vec3 normal{0.0F};  ///< unit, outward
+  float length = 0;        ///< of the way inside
+  int steps = 0;
+  int cube = 0;
+  bool bounded = false;  ///< stopped by the bound: the point is the last surface point fetched
+};
+
+/// The share of the next step that cones A and B allow, at distance l from the centre along v inside d.
+inline float allowed_step(const CubeSample& s, const glm::vec3& v, float l, const glm::vec3& h) {
+  const float d = s.bounds.x, hv = glm::dot(h, v);
+  const glm::vec3 n = glm::normalize(glm::vec3(s.plane));
+  // Cone A: apex S, base at O, so a = n = −v. Cone B: apex O, base in the tangent plane, a = v.
+  const float a = d * cone_step(l / d, -hv, -hv, 1.0F, s.bounds.y);
+  const float b = d * cone_step((d - l) / d, hv, glm::dot(h, n), glm::dot(v, n), s.bounds.z);
+  const float step = std::max(a < kFar ? a : 0.0F, b < kFar ? b : 0.0F);
+  return std::min(step, 2.0F * d);
+}
+
+/// The cube whose centre is nearest to the plane through p across the direction to the current centre, among those not
+/// in `asked`; −1 when there is none (Sec. 2.3, Fig. 7a).
+template <class Maps>
+int next_cube(const Maps& maps, const glm::vec3& p, int current, std::uint32_t asked) {
+  const glm::vec3 across = glm::normalize(p - maps.center(current));
+  int best = -1;
+  float least = kFar;
+  for (int i = 0; i < maps.count(); ++i) {
+    if ((asked >> static_cast<unsigned>(i) & 1U) != 0U) continue;
+    const float distance = std::abs(glm::dot(maps.center(i) - p, across));
+    if (distance >= least) continue;
+    least = distance;
+    best = i;
+  }
+  return best;
+}
+
+/// Follows the ray p + t·h (h unit) from a surface point with outward unit normal `normal` through the inside, starting
+/// in `cube`.
+template <class Maps>
+Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, const glm::vec3& h, int cube,
+               const SearchOptions& options) {
+  // Step 4 of the paper's listing: cone C clears the way, if the ray lies in it (after total reflection it may not).
+  float t = options.min_step;
+  if (-glm::dot(h, normal) >= options.cosine_c - 1e-4F) {
+    const CubeSample s = maps.fetch(cube, p - maps.center(cube));
+    t = std::max(t, s.bounds.w);
+  }
+  Exit exit;
+  float inside = 0, outside = kFar;
+  glm::vec3 v(0.0F);
+  CubeSample s;
+  bool found = false;
+  while (!found && exit.steps < options.iterations) {
+    ++exit.steps;
+    const glm::vec3 w = p + t * h - maps.center(cube);
+    const float l = std::max(glm::length(w), 1e-20F);
+    v = w / l;
+    if (l < maps.sphere(cube)) {
+      inside = t;
+      t += std::max(maps.sphere(cube) * sphere_step(l / maps.sphere(cube), glm::dot(h, v)), options.min_step);
+      continue;
+    }
+    s = maps.fetch(cube, v);
+    if (l < s.bounds.x) {
+      inside = t;
+      t += std::max(allowed_step(s, v, l, h), options.min_step);
+      continue;
+    }
+    // Outside for this cube: through the surface, or out of its sight.
+    std::uint32_t asked = 1U << static_cast<unsigned>(cube);
+    bool seen = false;
+    for (int k = 0; k < options.switches && !seen; ++k) {
+      const int other = next_cube(maps, p + t * h, cube, asked);
+      if (other < 0) break;
+      asked |= 1U << static_cast<unsigned>(other);
+      const glm::vec3 from_other = p + t * h - maps.center(other);
+      if (glm::length(from_other) < maps.fetch(other, from_other).bounds.x) {
+        cube = other;
+        seen = true;
+      }
+    }
+    if (seen) continue;
+    // A ray that heads inwards is only beneath the sampled surface, not through it.
+    found = glm::dot(h, glm::vec3(s.plane)) > 0.0F;
+    if (found)
+      outside = t;
+    else
+      t += options.min_step;
+  }
+
+  exit.bounded = !found;
+  if (!found) {
+    v = glm::normalize(p + t * h - maps.center(cube));
+    s = maps.fetch(cube, v);
+  }
+  for (int k = 0; found && k < options.refine; ++k) {
+    // To the tangent plane at S, or half-way where that leads out of the known interval.
+    const glm::vec3 n(s.plane);
+    const float slope = glm::dot(h, n);
+    const glm::vec3 to_s = maps.center(cube) + s.bounds.x * v - (p + t * h);
+    float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
+    if (!(next >= inside && next <= outside)) next = 0.5F * (inside + std::min(outside, t));
+    t = next;
+    const glm::vec3 w = p + t * h - maps.center(cube);
+    const float l = std::max(glm::length(w), 1e-20F);
+    v = w / l;
+    s = maps.fetch(cube, v);
+    (l < s.bounds.x ? inside : outside) = t;
+  }
+  const bool on_ray = found && options.refine > 0;
+  exit.point = on_ray ? p + t * h : maps.center(cube) + s.bounds.x * v;
+  exit.length = t;
+  exit.cube = cube;
+  exit.normal = glm::normalize(glm::vec3(s.plane));
+  return exit;
+}
+
+}  // namespace pellucid::geocube
