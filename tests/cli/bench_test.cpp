@@ -11,7 +11,7 @@ using Words = std::vector<std::string>;
 
 class Bench : public testing::Test {
  protected:
-  Folder folder;
+  TemporaryFolder folder;
   std::string scene = write_small_scene(folder).string();
 
   Outcome bench(const Words& more = {}) const {

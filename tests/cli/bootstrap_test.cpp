@@ -7,7 +7,7 @@ namespace {
 constexpr const char* kBootstrap = PELLUCID_SOURCE_DIR "/bootstrap";
 
 Outcome bootstrap_on(std::string_view os_release, const std::vector<std::string>& verbs) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto path = write_file(folder / "os-release", os_release);
   std::vector<std::string> command{kBootstrap};
   command.insert(command.end(), verbs.begin(), verbs.end());
@@ -47,7 +47,7 @@ TEST(Bootstrap, RefusesReleasesWithoutTheLibraries) {
 
 TEST(Bootstrap, TellsWhatIsMissingWithoutARightToInstall) {
   if (run({"id", "-u"}).out != "0\n") GTEST_SKIP() << "takes root, to become nobody";
-  const Folder folder;
+  const TemporaryFolder folder;
   // A dpkg-query that knows of no package, and no sudo, for a user who is not root.
   write_file(folder / "dpkg-query", "#!/bin/sh\nexit 1\n");
   ASSERT_TRUE(succeeded(run({"chmod", "-R", "a+rx", folder.path().string()})));

@@ -17,7 +17,7 @@ class CompareBounds : public testing::Test {
     return pellucid(words);
   }
 
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path reference = write_png_file(folder / "reference.png", flat(16, 16, 0.2F, 0.2F, 0.2F));
   const std::filesystem::path test = write_png_file(folder / "test.png", flat(16, 16, 0.4F, 0.4F, 0.4F));  // rmse 0.2
 };
@@ -42,7 +42,7 @@ TEST_F(CompareBounds, RefusesBoundsThatMeanNothing) {
 }
 
 TEST(CompareMask, TheReferencesLayerIsUsedUnlessToldOtherwise) {
-  const Folder folder;
+  const TemporaryFolder folder;
   ImageFile file;
   file.image = flat(20, 16, 1, 1, 1);
   Image mask(20, 16, 1), other(20, 16, 1);

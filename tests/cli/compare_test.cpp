@@ -19,7 +19,7 @@ json compared(const std::filesystem::path& reference, const std::filesystem::pat
 }
 
 TEST(Compare, AnImageWithItselfHasNoError) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const auto& path :
        {write_exr_file(folder / "a.exr", pattern(48, 32)), write_png_file(folder / "a.png", pattern(48, 32))}) {
     const json metrics = compared(path, path, "mse,rmse,ssim,flip");
@@ -32,7 +32,7 @@ TEST(Compare, AnImageWithItselfHasNoError) {
 }
 
 TEST(Compare, AConstantDifferenceIsItsOwnRootMeanSquare) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto reference = write_exr_file(folder / "reference.exr", flat(32, 32, 0.5F, 0.5F, 0.5F));
   const auto test = write_exr_file(folder / "test.exr", flat(32, 32, 0.75F, 0.75F, 0.75F));
   const json metrics = compared(reference, test, "mse,rmse,psnr");
@@ -41,7 +41,7 @@ TEST(Compare, AConstantDifferenceIsItsOwnRootMeanSquare) {
 }
 
 TEST(Compare, FlipOfBlackAndWhiteIsNearOne) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto black = write_png_file(folder / "black.png", flat(40, 40, 0, 0, 0));
   const auto white = write_png_file(folder / "white.png", flat(40, 40, 1, 1, 1));
   const double mean = compared(black, white, "flip").at("flip_mean").get<double>();
@@ -50,7 +50,7 @@ TEST(Compare, FlipOfBlackAndWhiteIsNearOne) {
 }
 
 TEST(Compare, PrintsTheMetricsThatWereAskedFor) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto a = write_exr_file(folder / "a.exr", pattern(32, 32));
   const json metrics = compared(a, a, "rmse");
   EXPECT_TRUE(metrics.contains("rmse"));
@@ -62,7 +62,7 @@ TEST(Compare, PrintsTheMetricsThatWereAskedFor) {
 }
 
 TEST(Compare, WritesAnErrorMapOfTheSameSize) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto a = write_exr_file(folder / "a.exr", pattern(40, 24));
   const auto b = write_exr_file(folder / "b.exr", flat(40, 24, 0.2F, 0.4F, 0.6F));
   const auto map = folder / "map.png";
@@ -75,7 +75,7 @@ TEST(Compare, WritesAnErrorMapOfTheSameSize) {
 }
 
 TEST(Compare, RefusesWhatCannotBeCompared) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto a = write_exr_file(folder / "a.exr", pattern(32, 24));
   const auto other_size = write_exr_file(folder / "b.exr", pattern(33, 24));
   const auto encoded = write_png_file(folder / "c.png", pattern(32, 24));
@@ -93,7 +93,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
 }
 
 TEST(Compare, RefusesImagesCutShortAnywhere) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const auto& whole :
        {write_exr_file(folder / "whole.exr", pattern(64, 64)), write_png_file(folder / "whole.png", pattern(64, 64))}) {
     const std::string bytes = read_file(whole);
@@ -115,7 +115,7 @@ const std::string kLimit = "ulimit -v 3000000; ";
 // A header of a hundred bytes can ask for terabytes. With 3 GB of address space, allocating would fail with another
 // status than refusing.
 TEST(Compare, RefusesHugeImagesBeforeAllocating) {
-  const Folder folder;
+  const TemporaryFolder folder;
   constexpr int kLowest = std::numeric_limits<int>::min(), kHighest = std::numeric_limits<int>::max();
   const std::vector<std::filesystem::path> huge{
       write_file(folder / "square.exr", exr_header(0, 0, 99'999, 99'999)),

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -129,32 +128,6 @@ bool Background::running() {
   return false;
 }
 
-Folder::Folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "pellucid_cli_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) fail("mkdtemp");
-  path_ = name;
-}
-
-Folder::~Folder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot read " + path.string());
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::filesystem::path write_file(const std::filesystem::path& path, std::string_view content) {
-  std::ofstream file(path, std::ios::binary);
-  file << content;
-  if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
-  return path;
-}
-
 testing::AssertionResult refused(const Outcome& outcome, int status, const std::vector<std::string>& parts) {
   auto failure = [&](const std::string& why) {
     return testing::AssertionFailure() << why << "\nstatus " << outcome.status << ", signal " << outcome.signal
@@ -182,7 +155,7 @@ testing::AssertionResult succeeded(const Outcome& outcome) {
                                      << "\nstdout: " << outcome.out << "\nstderr: " << outcome.err;
 }
 
-std::filesystem::path write_small_scene(const Folder& folder) {
+std::filesystem::path write_small_scene(const TemporaryFolder& folder) {
   return write_file(folder / "small.scene.toml", R"(title = "A pole in a box of fog"
 ambient = [0.3, 0.3, 0.35]
 

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json_fwd.hpp>
 
+#include "tests/temporary_folder.hpp"
+
 /// Runs the built program as a user's shell would, and looks at what it says.
 namespace pellucid::test {
 
@@ -45,23 +47,6 @@ class Background {
   int pid_ = -1;
 };
 
-/// A folder that goes when the test is done.
-class Folder {
- public:
-  Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string read_file(const std::filesystem::path&);
-std::filesystem::path write_file(const std::filesystem::path&, std::string_view content);
-
 /// True if it ended with `status` and its standard error holds exactly one line that begins with "error: ", which
 /// contains every one of `parts`; with status 2 that line is all it says, and standard output stays empty.
 testing::AssertionResult refused(const Outcome&, int status, const std::vector<std::string>& parts);
@@ -69,6 +54,6 @@ testing::AssertionResult refused(const Outcome&, int status, const std::vector<s
 testing::AssertionResult succeeded(const Outcome&);
 
 /// A scene of one lit floor and one small box of fog, 64 by 48 pixels in a blink. Returns its path.
-std::filesystem::path write_small_scene(const Folder&);
+std::filesystem::path write_small_scene(const TemporaryFolder&);
 
 }  // namespace pellucid::test

@@ -15,7 +15,7 @@ using Words = std::vector<std::string>;
 
 class Render : public testing::Test {
  protected:
-  Folder folder;
+  TemporaryFolder folder;
   std::string scene = write_small_scene(folder).string();
 
   Outcome render(const std::filesystem::path& output, const Words& more = {}, const Setting& setting = {}) const {

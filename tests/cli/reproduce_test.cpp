@@ -14,7 +14,7 @@ using Words = std::vector<std::string>;
 
 class ReproduceAgain : public testing::Test {
  protected:
-  Folder folder;
+  TemporaryFolder folder;
   std::string scene = write_small_scene(folder).string();
   std::filesystem::path picture = folder / "fog.exr";
 

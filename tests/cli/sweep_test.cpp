@@ -62,7 +62,7 @@ slices = 8
 
 class Sweep : public testing::Test {
  protected:
-  Folder folder;
+  TemporaryFolder folder;
   std::string scene = write_small_scene(folder).string();
   std::string spec = write_file(folder / "small.toml", small_spec(scene)).string();
   std::string store = (folder / "small.db").string();
@@ -280,7 +280,7 @@ TEST_F(Sweep, TablesNeedTheirPointsAndSayHowToGetThem) {
 }
 
 TEST(Reproduce, RefusesWhatItDoesNotKnow) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string out = (folder / "results").string();
   EXPECT_TRUE(refused(pellucid({"reproduce", "sampling_huls", "--preview", "-o", out}), 2, {"sampling_hulls"}));
   EXPECT_TRUE(refused(pellucid({"reproduce", (folder / "none.exr").string(), "-o", out}), 2, {"none.exr"}));

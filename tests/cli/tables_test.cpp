@@ -35,7 +35,7 @@ TEST(TableCommand, GivesEveryFormat) {
 }
 
 TEST(TableCommand, WritesAFile) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto path = folder / "table.md";
   const Outcome outcome = pellucid({"table", kTable, "-o", path.string()});
   ASSERT_TRUE(succeeded(outcome));
@@ -45,7 +45,7 @@ TEST(TableCommand, WritesAFile) {
 }
 
 TEST(TableCommand, RefusesWhatCannotBe) {
-  const Folder folder;
+  const TemporaryFolder folder;
   EXPECT_TRUE(refused(pellucid({"table", "sampling_huls.table1"}), 2, {kTable}));
   EXPECT_TRUE(refused(pellucid({"table", kTable, "--store", (folder / "none.db").string()}), 2, {"none.db"}));
   EXPECT_TRUE(refused(pellucid({"table", kTable, "--device-name", "GPU"}), 2, {"--store"}));
@@ -66,7 +66,7 @@ TEST(TableCommand, AFullDiskIsAnError) {
 
 /// The built-in spec's name with a sweep of a few pixels: its rows fill the table.
 TEST(TableCommand, FillsItselfFromAStore) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto scene = write_small_scene(folder);
   const auto spec = write_file(folder / "table1.toml", R"(name = "sampling_hulls_table1"
 title = "Table 1, tiny"
@@ -111,7 +111,7 @@ samples = [32, 8]
 }
 
 TEST(ResultsCommand, NeedsAStoreThatIsThere) {
-  const Folder folder;
+  const TemporaryFolder folder;
   EXPECT_TRUE(refused(pellucid({"results"}), 2, {"store"}));
   EXPECT_TRUE(refused(pellucid({"results", (folder / "none.db").string(), "--json"}), 2, {"none.db"}));
 }

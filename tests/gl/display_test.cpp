@@ -269,7 +269,7 @@ file_rules:
 displays: {d: [!<View> {name: v, colorspace: x}]}
 colorspaces: [!<ColorSpace> {name: x}]
 )";
-  const std::vector<std::string> files = {folder.path() + "/nowhere.ocio", folder.write("broken.ocio", "roles: ["),
+  const std::vector<std::string> files = {folder / "nowhere.ocio", folder.write("broken.ocio", "roles: ["),
                                           folder.write("empty.ocio", ""), folder.path(),
                                           folder.write("no_role.ocio", no_entry)};
   for (const std::string& file : files) {

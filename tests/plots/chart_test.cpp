@@ -5,19 +5,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include <expat.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "algorithms/scene/image.hpp"
 #include "gl/error.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -105,10 +102,9 @@ TEST(Chart, TheLineReachesFromTheFirstPointToTheLastInsideThePlot) {
   chart.series = {{.label = "",
                    .points = {{1, 0.5}, {8, 0.02}, {64, 0.1}},
                    .style = {.color = {213, 94, 0}, .marker = Marker::none}}};
-  const auto path = std::filesystem::temp_directory_path() / ("pellucid_line_" + std::to_string(::getpid()) + ".png");
-  write_chart(chart, path);
-  const Image image = read_image(path).image;
-  std::filesystem::remove(path);
+  const test::TemporaryFolder folder;
+  write_chart(chart, folder / "line.png");
+  const Image image = read_image(folder / "line.png").image;
   const int zoom = image.width / chart.width_px;
   ASSERT_GE(zoom, 1);
   // Per column, the highest and the lowest pixel in the series' colour.
@@ -155,30 +151,26 @@ TEST(Chart, MoreLegendNeedsMorePageNotLessPlot) {
 }
 
 TEST(Chart, PicturesNeedTheConverter) {
+  const test::TemporaryFolder folder;
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "/nowhere", 1);
   std::string words = "no error";
   try {
-    write_chart(sample(), std::filesystem::temp_directory_path() / "pellucid_never.png");
+    write_chart(sample(), folder / "never.png");
   } catch (const RuntimeError& e) {
     words = e.what();
   }
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_NE(words.find("rsvg-convert"), std::string::npos) << words;
-  EXPECT_FALSE(std::filesystem::exists(std::filesystem::temp_directory_path() / "pellucid_never.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "never.png"));
 }
 
 TEST(Chart, FilesAreWhatTheirNameSays) {
-  const auto folder = std::filesystem::temp_directory_path() / ("pellucid_chart_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  auto read = [](const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  };
+  const test::TemporaryFolder folder;
   write_chart(sample(), folder / "c.svg");
-  EXPECT_TRUE(parse(read(folder / "c.svg")).well_formed);
+  EXPECT_TRUE(parse(test::read_file(folder / "c.svg")).well_formed);
   write_chart(sample(), folder / "c.pdf");
-  EXPECT_EQ(read(folder / "c.pdf").substr(0, 5), "%PDF-");
+  EXPECT_EQ(test::read_file(folder / "c.pdf").substr(0, 5), "%PDF-");
   write_chart(sample(), folder / "c.png");
   const Image image = read_image(folder / "c.png").image;
   EXPECT_NEAR(static_cast<double>(image.width) / image.height, 460.0 / 340.0, 0.01);
@@ -194,7 +186,6 @@ TEST(Chart, FilesAreWhatTheirNameSays) {
     }
   }
   EXPECT_TRUE(white && dark && orange);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(HeatMap, DrawsAndRefuses) {

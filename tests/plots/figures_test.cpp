@@ -1,15 +1,11 @@
 #include "plots/figures.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "gl/error.hpp"
 #include "sweeps/spec.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -74,16 +70,11 @@ std::string message(auto&& f) {
 
 class Figures : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string draw(const std::string& name, const std::vector<json>& from) {
-    const auto path = folder_ / (name + ".svg");
-    write_figure(name, from, path);
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    write_figure(name, from, folder_ / (name + ".svg"));
+    return test::read_file(folder_ / (name + ".svg"));
   }
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("pellucid_figures_" + std::to_string(::getpid()));
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(Figures, AllAreDrawnFromOneStore) {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "gl/error.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -103,7 +103,7 @@ class Page {
   std::size_t at_ = 0;
 };
 
-class WrittenReport : public test::TemporaryFolder {
+class WrittenReport : public test::FolderTest {
  protected:
   // Every kind of block, with text that would break a page if it went in as it is.
   Report tiny() const {

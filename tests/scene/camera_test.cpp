@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/scene/scene.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {

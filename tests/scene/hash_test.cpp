@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
@@ -26,7 +26,7 @@ TEST(Sha256, PiecesAreKeptApart) {
   EXPECT_EQ(of("ab", "c"), of("ab", "c"));
 }
 
-class HashFile : public test::TemporaryFolder {};
+class HashFile : public test::FolderTest {};
 
 TEST_F(HashFile, IsThatOfItsContent) {
   const std::string content(200'001, 'x');

@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
@@ -31,7 +31,7 @@ Image ramp(int width, int height, int channels) {
   return image;
 }
 
-class ExrTest : public test::TemporaryFolder {
+class ExrTest : public test::FolderTest {
  protected:
   /// One part of float channels, all with the value of their position in the list.
   void write_channels(const std::string& name, std::initializer_list<const char*> channels,
@@ -52,7 +52,7 @@ class ExrTest : public test::TemporaryFolder {
     out.writePixels(window.max.y - window.min.y + 1);
   }
 };
-class PngTest : public test::TemporaryFolder {};
+class PngTest : public test::FolderTest {};
 
 TEST_F(ExrTest, RoundTripKeepsPixelsLayersAndAttributes) {
   ImageFile written;
@@ -263,8 +263,8 @@ TEST_F(ExrTest, WhatIsNoImageSaysSo) {
   EXPECT_EQ(message_of([&] { read_image(file("none.exr")); }), refusal("none.exr") + "No such file or directory");
   EXPECT_EQ(message_of([&] { read_image(write("e.exr", "")); }), refusal("e.exr") + "the file is empty");
   EXPECT_EQ(message_of([&] { read_image(write("t.exr", "title = 1")); }), refusal("t.exr") + "neither OpenEXR nor PNG");
-  EXPECT_EQ(message_of([&] { read_image(folder_); }),
-            "cannot read image '" + folder_.string() + "': not a regular file");
+  EXPECT_EQ(message_of([&] { read_image(folder_.path()); }),
+            "cannot read image '" + folder_.path().string() + "': not a regular file");
 }
 
 TEST_F(ExrTest, AFailedWriteNamesTheReasonAndKeepsTheOldFile) {
@@ -274,8 +274,8 @@ TEST_F(ExrTest, AFailedWriteNamesTheReasonAndKeepsTheOldFile) {
             "cannot write '" + file("no/such/a.exr").string() + "': No such file or directory");
   EXPECT_EQ(message_of<RuntimeError>([&] { write_exr("/dev/full", image); }),
             "cannot write '/dev/full': No space left on device");
-  EXPECT_EQ(message_of<RuntimeError>([&] { write_exr(folder_, image); }),
-            "cannot write '" + folder_.string() + "': Is a directory");
+  EXPECT_EQ(message_of<RuntimeError>([&] { write_exr(folder_.path(), image); }),
+            "cannot write '" + folder_.path().string() + "': Is a directory");
   EXPECT_EQ(message_of<RuntimeError>([&] { write_png("/dev/full", image.image); }),
             "cannot write '/dev/full': No space left on device");
   write("old.exr", "old");

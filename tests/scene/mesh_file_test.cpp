@@ -5,14 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
 
 using test::message_of;
 
-class MeshFileTest : public test::TemporaryFolder {
+class MeshFileTest : public test::FolderTest {
  protected:
   std::string refusal(std::string_view name) { return "cannot read mesh '" + file(name).string() + "': "; }
 };

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/scene/procedural.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
@@ -134,7 +134,7 @@ TEST(Isosurface, LevelOutsideTheDataIsRefused) {
   EXPECT_NE(words.find("level 9 is not between"), std::string::npos) << words;
 }
 
-class MeshKeys : public test::TemporaryFolder {
+class MeshKeys : public test::FolderTest {
  protected:
   // A tetrahedron without its bottom, and a scene with a mesh of it.
   std::string scene_with(std::string_view keys) const {

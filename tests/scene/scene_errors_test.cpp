@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/scene/scene.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
 
-class SceneErrors : public test::TemporaryFolder {
+class SceneErrors : public test::FolderTest {
  protected:
   /// What load_scene() says of the text, without the file's name.
   std::string error_of(std::string_view text) {

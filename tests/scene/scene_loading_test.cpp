@@ -8,12 +8,12 @@
 
 #include "algorithms/scene/image.hpp"
 #include "algorithms/scene/scene.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
 
-class SceneLoading : public test::TemporaryFolder {
+class SceneLoading : public test::FolderTest {
  protected:
   Scene load(std::string_view text, std::string_view name = "s.toml") { return load_scene(write(name, text).string()); }
 };
@@ -372,7 +372,7 @@ TEST(EmbeddedScenes, AllLoadAtTheEndsOfTheirParameters) {
 TEST_F(SceneLoading, TheScenesOfEachFigureHaveAProceduralVariant) {
   const char* before = std::getenv("PELLUCID_ASSETS");
   const std::string kept = before != nullptr ? before : "";
-  ::setenv("PELLUCID_ASSETS", folder_.c_str(), 1);
+  ::setenv("PELLUCID_ASSETS", folder_.path().c_str(), 1);
   for (const char* name : {"fog_forest", "water_tank_procedural", "teapot_room", "statue_spotlight_procedural"})
     EXPECT_FALSE(load_scene(name).stand_in.empty()) << name;
   if (before != nullptr) {

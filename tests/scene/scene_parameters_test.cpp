@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/scene/scene.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
 
-class SceneParameters : public test::TemporaryFolder {
+class SceneParameters : public test::FolderTest {
  protected:
   Scene load(std::string_view parameters) {
     static constexpr std::string_view kScene = R"(title = "t"

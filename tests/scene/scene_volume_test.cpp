@@ -5,12 +5,12 @@
 
 #include "algorithms/scene/procedural.hpp"
 #include "algorithms/scene/scene.hpp"
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
 
-class SceneVolumes : public test::TemporaryFolder {
+class SceneVolumes : public test::FolderTest {
  protected:
   Scene load(std::string_view text) {
     return load_scene(

@@ -13,7 +13,7 @@
 #include <vtkXMLImageDataWriter.h>
 #include <zlib.h>
 
-#include "tests/scene/temporary_folder.hpp"
+#include "tests/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
@@ -25,7 +25,7 @@ const std::string kNrrd =
     "NRRD0004\n# a comment\ntype: float\ndimension: 3\nsizes: 4 3 2\nspacings: 1 2 3\nendian: little\n";
 
 /// 4 x 3 x 2 voxels at spacing 1, 2, 3, each its own index.
-class VolumeFiles : public test::TemporaryFolder {
+class VolumeFiles : public test::FolderTest {
  protected:
   static std::vector<float> indices() {
     std::vector<float> values(24);

@@ -10,6 +10,7 @@
 #include "sweeps/catalogue.hpp"
 #include "sweeps/plan.hpp"
 #include "sweeps/spec.hpp"
+#include "tests/temporary_folder.hpp"
 
 /// Techniques and scenes that need no GL: what specs, plans and sweeps are tested with.
 namespace pellucid::sweeps::test {
@@ -82,18 +83,7 @@ class FakeCatalogue final : public Catalogue {
   }
 };
 
-/// A folder that is gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+using pellucid::test::TemporaryFolder;
 
 /// The message of the InputError that `f` throws; fails the test when it throws none.
 std::string input_error(const std::function<void()>& f);
