@@ -158,7 +158,8 @@ std::vector<Value> read_axis(const SpecReader& read, const Owners& owners, const
   if (list->empty()) read.fail(*list, fmt::format("axis {} lists no value", entry.name));
   for (const toml::node& node : *list) {
     Value value = owners.check(entry, node, read.value(node, entry.name));
-    if (std::find(values.begin(), values.end(), value) != values.end()) {
+    // Walked together with other axes, a value may well come again.
+    if (owners.block.combine == Combine::grid && std::find(values.begin(), values.end(), value) != values.end()) {
       read.fail(node, fmt::format("axis {} lists {} twice", entry.name, to_text(value)));
     }
     values.push_back(std::move(value));
