@@ -40,7 +40,7 @@ void check(const CubeOptions& o) {
   if (o.layers < 1 || o.layers > 8)
     throw InputError(fmt::format("geocube: layers = {} is out of range [1, 8]", o.layers));
   if (!(o.epsilon > 0)) throw InputError(fmt::format("geocube: epsilon = {} is not above 0", o.epsilon));
-  if (!(o.ior >= 1)) throw InputError(fmt::format("geocube: an index of refraction of {} is below 1", o.ior));
+  if (!(o.ior > 0)) throw InputError(fmt::format("geocube: an index of refraction of {} is not above 0", o.ior));
 }
 
 void check(const Solid& solid, std::span<const glm::dvec3> centers) {
@@ -142,7 +142,7 @@ class Cones {
     }
     sheets_.push_back(&outer_[0].sheet());
     nearest_only_ = {&outer_[0].sheet()};
-    sine_c_ = 1 / options.ior;
+    sine_c_ = std::min(1.0, 1 / options.ior);
     cosine_c_ = std::sqrt(std::max(0.0, 1 - sine_c_ * sine_c_));
   }
 

@@ -20,12 +20,12 @@ enum class ConeBase {
 };
 
 struct CubeOptions {
-  int resolution = 64;     ///< texels along a face's edge, 8 to 512
-  int layers = 1;          ///< intervals of the inside along a direction, 1 to 8; 1 as in the paper
-  double epsilon = 0.005;  ///< ε, as a share of the solid's diagonal; above 0
+  int resolution = 64;    ///< texels along a face's edge, 8 to 512
+  int layers = 1;         ///< intervals of the inside along a direction, 1 to 8; 1 as in the paper
+  double epsilon = 0.04;  ///< ε, as a share of the solid's diagonal; above 0
   ConeBase cone_b = ConeBase::inscribed;
   bool use_a = true, use_b = true, use_c = true, use_d = true;
-  double ior = 1.5;  ///< η, at least 1; cone C's half-angle is arcsin(1/η)
+  double ior = 1.5;  ///< η, above 0; cone C's half-angle is arcsin(1/η), 90° below η = 1
 };
 
 /// One distance layer of a cube map, a value for each texel in CubeGrid's order: what OpenGL takes as RGBA32F. Along
