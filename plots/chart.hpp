@@ -70,7 +70,13 @@ struct HeatMap {
   struct Cell {
     std::size_t row = 0, column = 0;
   };
-  std::optional<Cell> outlined{};  ///< a cell to point out
+  /// A cell to point out, outlined and labelled. The first's outline is solid, the others' are dashed, so that two in
+  /// one cell can be told apart.
+  struct Mark {
+    Cell cell{};
+    std::string label{};  ///< a word or two, below the number
+  };
+  std::vector<Mark> marks{};
   int width_px = 460;
   int height_px = 340;
 };

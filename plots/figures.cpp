@@ -13,15 +13,16 @@
 #include "algorithms/parameters.hpp"
 #include "gl/error.hpp"
 #include "plots/chart.hpp"
+#include "plots/plane_map.hpp"
+#include "plots/row_figures.hpp"
 #include "plots/rows.hpp"
+#include "plots/shadow_figures.hpp"
 #include "plots/style.hpp"
 
 namespace pellucid::plots {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kPaperHulls = 4, kPaperSamples = 8;  // Imagire et al. 2007, Sec. 5: "4×8"
 
 /// Volume samples along a ray: M·N for hulls, N for ray marching, the count for slices.
 std::optional<double> budget(const json& row) {
@@ -123,50 +124,6 @@ std::string fps_figure(const FigureInfo& info, const Rows& rows) {
   chart.y = {"frame rate", "frames/s", scale, scale == Scale::linear};
   chart.note = joined({provenance_note(rows, true), "Bars: 95 % interval of the median."});
   return to_svg(chart);
-}
-
-std::string fps_map(const FigureInfo& info, const Rows& rows) {
-  const std::vector<Group> groups = group_rows(rows, kBudgetSettings);
-  check_distinct(groups, kBudgetSettings);
-  if (groups.size() > 1) {
-    throw InputError(
-        fmt::format("'{}' shows one setting beside M and N, the rows have {}: '{}', '{}'{}; choose with "
-                    "--where",
-                    info.name, groups.size(), groups[0].label, groups[1].label, groups.size() > 2 ? ", …" : ""));
-  }
-  std::set<double> hulls, samples;
-  for (const json* row : rows.kept) {
-    hulls.insert(*number(*row, "hulls"));
-    samples.insert(*number(*row, "samples"));
-  }
-  HeatMap map;
-  map.title = info.title;
-  map.x_label = "sampling hulls M";
-  map.y_label = "points per hull N";
-  map.value_label = "frames/s";
-  for (const double m : hulls)
-    map.columns.push_back(fmt::format("{:g}", m));
-  for (const double n : samples)
-    map.rows.push_back(fmt::format("{:g}", n));
-  map.values.assign(samples.size(), std::vector<std::optional<double>>(hulls.size()));
-  const auto place = [](const std::set<double>& values, double value) {
-    return static_cast<std::size_t>(std::distance(values.begin(), values.find(value)));
-  };
-  double least = HUGE_VAL, greatest = 0;
-  for (const json* row : rows.kept) {
-    const double fps = *number(*row, "fps");
-    map.values[place(samples, *number(*row, "samples"))][place(hulls, *number(*row, "hulls"))] = fps;
-    least = std::min(least, fps);
-    greatest = std::max(greatest, fps);
-  }
-  map.value_scale = scale_for(least, greatest);
-  std::string outlined;
-  if (hulls.contains(kPaperHulls) && samples.contains(kPaperSamples)) {
-    map.outlined = {place(samples, kPaperSamples), place(hulls, kPaperHulls)};
-    outlined = "Outlined: the paper's choice, M×N = 4×8.";
-  }
-  map.note = joined({provenance_note(rows, true), outlined});
-  return to_svg(map);
 }
 
 /// The mean may lie below both quartiles: they are of the error's mass, not of the pixels.
@@ -295,37 +252,95 @@ std::string error_time_figure(const FigureInfo& info, const Rows& all) {
 
 struct Figure {
   FigureInfo info;
-  std::vector<std::string> fields;  ///< that a row must have
-  std::function<std::string(const FigureInfo&, const Rows&)> draw;
+  /// The SVG of the rows that meet the conditions.
+  std::function<std::string(const FigureInfo&, const std::vector<json>&, const std::vector<Condition>&)> draw;
+
+  Figure(FigureInfo described, std::vector<std::string> fields,
+         std::string (*draw_rows)(const FigureInfo&, const Rows&))
+      : info(std::move(described)),
+        draw([fields = std::move(fields), draw_rows](const FigureInfo& about, const std::vector<json>& rows,
+                                                     const std::vector<Condition>& conditions) {
+          return draw_rows(about, choose_rows(rows, conditions, fields));
+        }) {}
+  /// Over the size of the shadow maps, in one of the paper's figures.
+  Figure(FigureInfo described, std::string figure, std::string field)
+      : info(std::move(described)),
+        draw([figure = std::move(figure), field = std::move(field)](
+                 const FigureInfo& about, const std::vector<json>& rows, const std::vector<Condition>& conditions) {
+          return shadow_size_figure(about, rows, conditions, figure, field);
+        }) {}
+  explicit Figure(const RowFigure& figure)
+      : info(figure.info),
+        draw([chart = figure.chart](const FigureInfo& about, const std::vector<json>& rows,
+                                    const std::vector<Condition>& conditions) {
+          RowChart wanted = chart;
+          wanted.title = about.title;
+          wanted.conditions.insert(wanted.conditions.end(), conditions.begin(), conditions.end());
+          return to_svg(chart_of_rows(rows, wanted));
+        }) {}
 };
 
 const std::vector<Figure>& all_figures() {
-  static const std::vector<Figure> kFigures{
-      {{"sampling_hulls.fps", "Frame rate over the number of sampling hulls",
-        "frame rate over M, a line for each number of points M·N", "sampling_hulls_curves"},
-       {"hulls", "samples", "fps"},
-       fps_figure},
-      {{"sampling_hulls.fps_map", "Frame rate over hulls and points",
-        "frame rate on the plane of M and N, the paper's choice 4×8 outlined", "sampling_hulls_curves"},
-       {"hulls", "samples", "fps"},
-       fps_map},
-      {{"sampling_hulls.error", "Perceived error over the number of samples",
-        "mean FLIP over M·N, with weighted quartiles, for hulls and their baselines", "sampling_hulls_curves"},
-       {"flip_mean"},
-       [](const FigureInfo& info, const Rows& rows) {
-         return error_figure(info, rows, "flip_mean", {"mean FLIP", "", Scale::log10, false});
-       }},
-      {{"sampling_hulls.rmse", "RMSE over the number of samples",
-        "root of the mean squared error of radiance over M·N, for hulls and their baselines", "sampling_hulls_curves"},
-       {"rmse"},
-       [](const FigureInfo& info, const Rows& rows) {
-         return error_figure(info, rows, "rmse", {"RMSE of radiance", "", Scale::log10, false});
-       }},
-      {{"sampling_hulls.error_time", "Perceived error against frame time",
-        "mean FLIP against the time of a frame, for hulls and their baselines", "sampling_hulls_curves"},
-       {"flip_mean", "frame_ms_median"},
-       error_time_figure},
-  };
+  static const std::string kShadows = "sampling_hulls_shadows";
+  static const std::vector<Figure> kFigures = [] {
+    std::vector<Figure> all{
+        {{"sampling_hulls.fps", "Frame rate over the number of sampling hulls",
+          "frame rate over M, a line for each number of points M·N", "sampling_hulls_curves"},
+         {"hulls", "samples", "fps"},
+         fps_figure},
+        {{"sampling_hulls.fps_map", "Frame rate over hulls and points",
+          "frame rate on the plane of M and N, the paper's choice 4×8 and ours marked", "sampling_hulls_curves"},
+         {"hulls", "samples", "fps"},
+         [](const FigureInfo& info, const Rows& rows) { return plane_map(info, rows, "fps"); }},
+        {{"sampling_hulls.error_map", "Perceived error over hulls and points",
+          "mean FLIP on the plane of M and N, the paper's choice 4×8 and ours marked", "sampling_hulls_curves"},
+         {"hulls", "samples", "fps", "flip_mean"},
+         [](const FigureInfo& info, const Rows& rows) { return plane_map(info, rows, "flip_mean"); }},
+        {{"sampling_hulls.error", "Perceived error over the number of samples",
+          "mean FLIP over M·N, with weighted quartiles, for hulls and their baselines", "sampling_hulls_curves"},
+         {"flip_mean"},
+         [](const FigureInfo& info, const Rows& rows) {
+           return error_figure(info, rows, "flip_mean", {"mean FLIP", "", Scale::log10, false});
+         }},
+        {{"sampling_hulls.rmse", "RMSE over the number of samples",
+          "root of the mean squared error of radiance over M·N, for hulls and their baselines",
+          "sampling_hulls_curves"},
+         {"rmse"},
+         [](const FigureInfo& info, const Rows& rows) {
+           return error_figure(info, rows, "rmse", {"RMSE of radiance", "", Scale::log10, false});
+         }},
+        {{"sampling_hulls.error_time", "Perceived error against frame time",
+          "mean FLIP against the time of a frame, for hulls and their baselines", "sampling_hulls_curves"},
+         {"flip_mean", "frame_ms_median"},
+         error_time_figure},
+        {{"sampling_hulls.shadow_error_fig10", "Fig. 10: error in the shadows over the size of the shadow maps",
+          "mean FLIP where the medium lies in shadow over the texels along a shadow map's side, with averaged "
+          "occlusion "
+          "rates and without",
+          kShadows},
+         "fig10",
+         "flip_mean_shadow"},
+        {{"sampling_hulls.shadow_error_fig11", "Fig. 11: error in the shadows over the size of the shadow map",
+          "mean FLIP where the medium lies in shadow over the texels along the shadow map's side, with averaged "
+          "occlusion rates and without",
+          kShadows},
+         "fig11",
+         "flip_mean_shadow"},
+        {{"sampling_hulls.shadow_time_fig10", "Fig. 10: frame time over the size of the shadow maps",
+          "time of a frame over the texels along a shadow map's side, with averaged occlusion rates and without",
+          kShadows},
+         "fig10",
+         "frame_ms_median"},
+        {{"sampling_hulls.shadow_time_fig11", "Fig. 11: frame time over the size of the shadow map",
+          "time of a frame over the texels along the shadow map's side, with averaged occlusion rates and without",
+          kShadows},
+         "fig11",
+         "frame_ms_median"},
+    };
+    for (const RowFigure& figure : row_figures())
+      all.emplace_back(figure);
+    return all;
+  }();
   return kFigures;
 }
 
@@ -369,7 +384,7 @@ void write_figure(std::string_view name, const std::vector<json>& rows, const st
     all.insert(all.begin(), {"sweep", sweep});
     break;
   }
-  write_svg_as(figure.draw(figure.info, choose_rows(rows, all, figure.fields)), path);
+  write_svg_as(figure.draw(figure.info, rows, all), path);
 }
 
 }  // namespace pellucid::plots

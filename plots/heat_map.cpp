@@ -20,6 +20,7 @@ constexpr double kBarWidth = 14;
 constexpr double kBarGap = 14;
 constexpr Color kMissing{238, 238, 238};
 constexpr Color kOutline = kPalette[1];
+const TextStyle kMarkText{8, kInk, false, Align::centre, Align::centre, false};
 
 /// Where a value stands between the least and the greatest: 0 to 1.
 struct ValueScale {
@@ -91,8 +92,36 @@ ValueScale check(const HeatMap& map) {
     }
   }
   if (!(scale.low <= scale.high)) throw InputError(fmt::format("heat map '{}' has no data", map.title));
-  assert(!map.outlined || (map.outlined->row < map.rows.size() && map.outlined->column < map.columns.size()));
+  for ([[maybe_unused]] const HeatMap::Mark& mark : map.marks)
+    assert(mark.cell.row < map.rows.size() && mark.cell.column < map.columns.size());
   return scale;
+}
+
+/// The words of the marks in a cell.
+std::string mark_label(const HeatMap& map, const HeatMap::Cell& cell) {
+  std::vector<std::string> words;
+  for (const HeatMap::Mark& mark : map.marks) {
+    if (mark.cell.row == cell.row && mark.cell.column == cell.column) words.push_back(mark.label);
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+struct Box {
+  double left, bottom, right, top;
+};
+
+/// The n-th mark's: each lies further in, and all but the first are dashed.
+void paint_outline(Painter& painter, const Box& cell, std::size_t n) {
+  constexpr double kWidth = 2.5;
+  const double inset = 1 + 4 * static_cast<double>(n);
+  const Box box{cell.left + inset, cell.bottom + inset, cell.right - inset, cell.top - inset};
+  const auto side = [&](double x0, double y0, double x1, double y1) {
+    painter.line(x0, y0, x1, y1, kOutline, kWidth, n == 0 ? Line::solid : Line::dashed);
+  };
+  side(box.left, box.bottom, box.right, box.bottom);
+  side(box.right, box.bottom, box.right, box.top);
+  side(box.right, box.top, box.left, box.top);
+  side(box.left, box.top, box.left, box.bottom);
 }
 
 std::string description(const HeatMap& map) {
@@ -152,7 +181,12 @@ std::string to_svg(const HeatMap& map) {
         // Below 6 px a number is a smear: the colour has to do.
         if (!value || cell_text.size_px < 6) continue;
         cell_text.color = ink_on(ground);
-        painter.text(x + cell_width / 2, y + cell_height / 2, cell_label(*value), cell_text);
+        const std::string label = mark_label(map, {r, c});
+        const double rise = label.empty() ? 0 : kMarkText.size_px / 2;
+        painter.text(x + cell_width / 2, y + cell_height / 2 + rise, cell_label(*value), cell_text);
+        TextStyle mark = kMarkText;
+        mark.color = cell_text.color;
+        if (!label.empty()) painter.text(x + cell_width / 2, y + cell_height / 2 - cell_text.size_px / 2, label, mark);
       }
     }
     for (std::size_t c = 0; c < map.columns.size(); ++c) {
@@ -161,17 +195,11 @@ std::string to_svg(const HeatMap& map) {
       label.vertical = Align::high;
       painter.text(frame.left + (static_cast<double>(c) + 0.5) * cell_width, frame.bottom - 5, map.columns[c], label);
     }
-    if (map.outlined) {
-      const double x = frame.left + static_cast<double>(map.outlined->column) * cell_width;
-      const double y = frame.bottom + static_cast<double>(map.outlined->row) * cell_height;
-      constexpr double kInset = 1;
-      const double right = x + cell_width - kInset;
-      const double top = y + cell_height - kInset;
-      constexpr double kWidth = 2.5;
-      painter.line(x + kInset, y + kInset, right, y + kInset, kOutline, kWidth);
-      painter.line(right, y + kInset, right, top, kOutline, kWidth);
-      painter.line(right, top, x + kInset, top, kOutline, kWidth);
-      painter.line(x + kInset, top, x + kInset, y + kInset, kOutline, kWidth);
+    for (std::size_t i = 0; i < map.marks.size(); ++i) {
+      const HeatMap::Cell& cell = map.marks[i].cell;
+      const double x = frame.left + static_cast<double>(cell.column) * cell_width;
+      const double y = frame.bottom + static_cast<double>(cell.row) * cell_height;
+      paint_outline(painter, {x, y, x + cell_width, y + cell_height}, i);
     }
     // The bar that says which colour is which value spans the data, not the ticks' round range.
     const double bar_left = frame.right + kBarGap;

@@ -60,6 +60,17 @@ Axis axis_of(const std::string& field) {
       {"mse", {"MSE", "", Scale::linear, true}},
       {"psnr", {"PSNR", "dB", Scale::linear, false}},
       {"ssim", {"SSIM", "", Scale::linear, false}},
+      {"flip_mean_shadow", {"mean FLIP in shadows", "", Scale::linear, true}},
+      {"rmse_shadow", {"RMSE in shadows", "", Scale::linear, true}},
+      {"shadow.size", {"side of a shadow map", "texels", Scale::linear, false}},
+      {"frame_ms_mean", {"mean frame time", "ms", Scale::linear, true}},
+      {"flip_mean_mask", {"mean FLIP on the object", "", Scale::linear, true}},
+      {"rmse_mask", {"RMSE on the object", "", Scale::linear, true}},
+      {"hit_error_m_mean", {"mean error of the hit point", "m", Scale::linear, true}},
+      {"unconverged_share", {"share of pixels that do not converge", "", Scale::linear, true}},
+      {"iterations", {"iterations", "", Scale::linear, false}},
+      {"cube_size", {"side of a cube map's face", "texels", Scale::linear, false}},
+      {"refresh_frames", {"frames from one drawing of the maps to the next", "", Scale::linear, false}},
   };
   const auto found = kKnown.find(field);
   if (found != kKnown.end()) return found->second;

@@ -194,8 +194,13 @@ TEST(HeatMap, DrawsAndRefuses) {
   map.columns = {"1", "2"};
   map.rows = {"1", "2", "4"};
   map.values = {{1.0, 2.0}, {3.0, std::nullopt}, {5.0, 6.0}};
-  map.outlined = HeatMap::Cell{1, 0};
-  EXPECT_TRUE(parse(to_svg(map)).well_formed);
+  map.marks = {{{1, 0}, "theirs"}, {{0, 1}, "ours"}};
+  const std::string svg = to_svg(map);
+  EXPECT_TRUE(parse(svg).well_formed);
+  EXPECT_NE(svg.find("theirs"), std::string::npos);
+  EXPECT_NE(svg.find("ours"), std::string::npos);
+  map.marks[1].cell = {1, 0};
+  EXPECT_NE(to_svg(map).find("theirs, ours"), std::string::npos) << "two marks in one cell share their words";
   map.values[0][0] = std::numeric_limits<double>::infinity();
   EXPECT_NE(message([&] { to_svg(map); }), "no error");
 }
