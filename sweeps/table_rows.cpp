@@ -12,6 +12,7 @@
 #include "algorithms/scene/scene.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
+#include "sweeps/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -170,6 +171,37 @@ const json* find_row(const ChosenRows& chosen, std::string_view technique,
     found = row;
   }
   return found;
+}
+
+const json* find_row_of(const ChosenRows& chosen, std::string_view block,
+                        const std::vector<std::pair<std::string, Value>>& values) {
+  const json* found = nullptr;
+  for (const json* row : chosen.rows) {
+    if (text(*row, "block") != block) continue;
+    const bool here = std::all_of(values.begin(), values.end(), [&](const auto& v) {
+      return row->contains(v.first) && row->at(v.first) == value_to_json(v.second);
+    });
+    if (!here) continue;
+    if (found != nullptr && text(*row, "point") != text(*found, "point")) {
+      std::vector<std::string> place;
+      for (const auto& [name, value] : values)
+        place.push_back(fmt::format("{} = {}", name, to_text(value)));
+      throw InputError(fmt::format("{} has two rows for {} of block {}: {}; a table shows one", chosen.sweep,
+                                   fmt::join(place, ", "), block, difference(*found, *row)));
+    }
+    found = row;
+  }
+  return found;
+}
+
+ChosenRows rows_of_blocks(const ChosenRows& chosen, const std::vector<std::string>& prefixes) {
+  ChosenRows out{chosen.sweep, {}};
+  for (const json* row : chosen.rows) {
+    const std::string block = text(*row, "block");
+    if (std::any_of(prefixes.begin(), prefixes.end(), [&](const std::string& p) { return block.starts_with(p); }))
+      out.rows.push_back(row);
+  }
+  return out;
 }
 
 std::optional<double> number(const json& row, const char* field) {

@@ -25,6 +25,12 @@ ChosenRows choose_rows(const TableInfo&, const std::vector<nlohmann::json>& rows
 const nlohmann::json* find_row(const ChosenRows&, std::string_view technique,
                                const std::vector<std::pair<std::string, std::int64_t>>& parameters);
 
+/// The row of a block with these values (any of its fields), or null. Throws InputError when two claim the place.
+const nlohmann::json* find_row_of(const ChosenRows&, std::string_view block,
+                                  const std::vector<std::pair<std::string, Value>>& values);
+/// The rows of the blocks whose names begin with one of these.
+ChosenRows rows_of_blocks(const ChosenRows&, const std::vector<std::string>& prefixes);
+
 /// A field that is a finite number.
 std::optional<double> number(const nlohmann::json& row, const char* field);
 /// A field that is text; empty when it is missing.
@@ -41,5 +47,21 @@ std::vector<std::string> provenance_notes(const TableInfo&, const ChosenRows&);
 /// Published numbers of Imagire et al. 2007, Table 1, beside ours.
 TableInfo sampling_hulls_table1_info();
 Table sampling_hulls_table1(const TableInfo&, const ChosenRows&);
+
+/// The frame rates that its Figs. 8 to 11 name, beside ours, with errors: n from 8 to 11.
+TableInfo sampling_hulls_figure_info(int n);
+Table sampling_hulls_fig8(const TableInfo&, const ChosenRows&);
+Table sampling_hulls_fig9(const TableInfo&, const ChosenRows&);
+Table sampling_hulls_fig10(const TableInfo&, const ChosenRows&);
+Table sampling_hulls_fig11(const TableInfo&, const ChosenRows&);
+
+/// Ours alone: hulls against slices of equally many samples, averaged occlusion in shadows, the paper's reference
+/// against the exact one.
+TableInfo sampling_hulls_equal_info();
+Table sampling_hulls_equal(const TableInfo&, const ChosenRows&);
+TableInfo sampling_hulls_shadows_info();
+Table sampling_hulls_shadows(const TableInfo&, const ChosenRows&);
+TableInfo sampling_hulls_references_info();
+Table sampling_hulls_references(const TableInfo&, const ChosenRows&);
 
 }  // namespace pellucid::sweeps

@@ -18,17 +18,31 @@ struct Entry {
   Make make;
 };
 
-// One line for each published table.
+// One line for each table.
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{sampling_hulls_table1_info(), &sampling_hulls_table1}};
+  static const std::vector<Entry> all{{sampling_hulls_table1_info(), &sampling_hulls_table1},
+                                      {sampling_hulls_figure_info(8), &sampling_hulls_fig8},
+                                      {sampling_hulls_figure_info(9), &sampling_hulls_fig9},
+                                      {sampling_hulls_figure_info(10), &sampling_hulls_fig10},
+                                      {sampling_hulls_figure_info(11), &sampling_hulls_fig11},
+                                      {sampling_hulls_equal_info(), &sampling_hulls_equal},
+                                      {sampling_hulls_shadows_info(), &sampling_hulls_shadows},
+                                      {sampling_hulls_references_info(), &sampling_hulls_references}};
   return all;
 }
 
 const Entry& find_entry(std::string_view name) {
   std::vector<std::string> names;
+  std::vector<const Entry*> short_named;  // "fig8" for "sampling_hulls.fig8"
   for (const Entry& entry : entries()) {
     if (entry.info.name == name) return entry;
     names.push_back(entry.info.name);
+    if (entry.info.name.ends_with(fmt::format(".{}", name))) short_named.push_back(&entry);
+  }
+  if (short_named.size() == 1) return *short_named.front();
+  if (short_named.size() > 1) {
+    throw InputError(fmt::format("'{}' is a table of several papers: {}, {}{}", name, short_named[0]->info.name,
+                                 short_named[1]->info.name, short_named.size() > 2 ? ", …" : ""));
   }
   const std::string near = nearest_name(name, names);
   throw InputError(near.empty() ? fmt::format("no table named '{}'; there are: {}", name, fmt::join(names, ", "))

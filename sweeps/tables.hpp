@@ -24,7 +24,8 @@ struct TableInfo {
 /// Every table, in the order of the papers.
 std::vector<TableInfo> tables();
 
-/// Throws InputError with the nearest name when there is no such table.
+/// By its name, or by the part behind the paper's ("fig8") where one paper alone has such a table. Throws InputError
+/// with the nearest name when there is none.
 TableInfo find_table(std::string_view name);
 
 /// One place of a table. `value` is what a program should read, `text` what is set for people: rounded, and with a
