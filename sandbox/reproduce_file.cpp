@@ -52,7 +52,9 @@ std::vector<std::string> arguments(const std::string& command, const json& recip
     out.push_back("--max-steps=" + std::to_string(recipe.at("max_steps").get<std::int64_t>()));
     for (const auto& [field, option] :
          {std::pair{"method", "--method="}, std::pair{"slices", "--slices="}, std::pair{"format", "--format="},
-          std::pair{"shadow_share", "--shadow-share="}}) {
+          std::pair{"shadow_share", "--shadow-share="}, std::pair{"samples", "--samples="},
+          std::pair{"reflections", "--reflections="}, std::pair{"cut", "--cut="}, std::pair{"caustics", "--caustics="},
+          std::pair{"photons", "--photons="}, std::pair{"caustic_radius_m", "--caustic-radius="}}) {
       if (recipe.contains(field)) out.push_back(option + text(recipe.at(field)));
     }
   }

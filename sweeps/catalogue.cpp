@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "algorithms/reference/reference.hpp"
 #include "algorithms/scene/hash.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
@@ -44,6 +45,8 @@ class Installed final : public Catalogue {
     facts.content_hash = scene.content_hash();
     for (const View& view : scene.views)
       facts.views.push_back(view.name);
+    facts.interfaces = has_interfaces(scene);
+    facts.volume = scene.volume.has_value();
     const auto infos = scene.parameters().infos();
     facts.parameters.assign(infos.begin(), infos.end());
     return scenes_.emplace(name, std::move(facts)).first->second;

@@ -13,6 +13,8 @@ struct SceneFacts {
   std::string content_hash;  ///< at the scene's default parameters
   std::vector<std::string> views;
   std::vector<ParameterInfo> parameters;  ///< without the prefix `scene.`
+  bool interfaces = false;                ///< it has mirrors, metals or dielectrics
+  bool volume = false;
 };
 
 /// What a spec may name. The installed one asks the registry and the scene loader; tests bring their own.

@@ -28,9 +28,22 @@ const Names kTimes{"frame_ms_median",
                    "clock",
                    "baseline_drift",
                    "prepare_s"};
-const Names kReference{
-    "reference_method",    "reference_step_error_max",     "reference_step_error_mean", "reference_unconverged_share",
-    "shadow_pixels_share", "reference_to_exact_flip_mean", "reference_to_exact_rmse"};
+const Names kReference{"reference_method",
+                       "reference_step_error_max",
+                       "reference_step_error_mean",
+                       "reference_unconverged_share",
+                       "shadow_pixels_share",
+                       "reference_to_exact_flip_mean",
+                       "reference_to_exact_rmse",
+                       "reference_samples",
+                       "reference_standard_error_max",
+                       "reference_standard_error_mean",
+                       "reference_caustic_error_max",
+                       "reference_caustic_error_mean",
+                       "reference_cut_weight_max",
+                       "reference_cut_weight_mean",
+                       "reference_lost_weight_mean",
+                       "reference_trace_s"};
 constexpr std::string_view kShadow = "_shadow";
 const Names kProvenance{"gpu_bytes",   "peak_rss_bytes", "device",      "driver",      "commit",
                         "dirty",       "scene_hash",     "shader_hash", "started_utc", "timed_unix_s",

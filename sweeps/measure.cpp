@@ -178,6 +178,18 @@ void Measurer::compare(const Point& point, const std::filesystem::path& referenc
   result.row["reference_step_error_mean"] = reference->step_error_mean;
   result.row["reference_unconverged_share"] = reference->unconverged_share;
   result.row["reference_method"] = name(point.reference.method);
+  if (reference->traced) {
+    const SurfaceStatistics& traced = *reference->traced;
+    result.row["reference_samples"] = traced.samples;
+    result.row["reference_standard_error_max"] = traced.standard_error_max;
+    result.row["reference_standard_error_mean"] = traced.standard_error_mean;
+    result.row["reference_caustic_error_max"] = traced.caustic_standard_error_max;
+    result.row["reference_caustic_error_mean"] = traced.caustic_standard_error_mean;
+    result.row["reference_cut_weight_max"] = traced.cut_weight_max;
+    result.row["reference_cut_weight_mean"] = traced.cut_weight_mean;
+    result.row["reference_lost_weight_mean"] = traced.lost_weight_mean;
+    result.row["reference_trace_s"] = traced.trace_s;
+  }
   if (reference->shadow_pixels_share) result.row["shadow_pixels_share"] = *reference->shadow_pixels_share;
   if (reference->to_exact) {
     result.row["reference_to_exact_rmse"] = reference->to_exact->at("rmse");

@@ -178,8 +178,16 @@ class Expander {
     point.size = size;
     point.metrics = block.metrics;
     point.timing = block.timing;
+    const SceneFacts& facts = catalogue_.scene(scene);
     point.reference = block.reference;
-    point.scene_hash = catalogue_.scene(scene).content_hash;
+    if (!block.metrics.empty()) {
+      try {
+        point.reference = settled(block.reference, scene, facts.interfaces, facts.volume);
+      } catch (const InputError& e) {
+        fail(spec_, block.at, e.what());
+      }
+    }
+    point.scene_hash = facts.content_hash;
     point.shader_hash = shader_hash(technique);
     for (const ParameterInfo& i : table_)
       point.parameters[i.name] = i.default_value;

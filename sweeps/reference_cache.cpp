@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdio>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,10 +18,24 @@ namespace pellucid::sweeps {
 namespace {
 
 /// Raise it when the tracer or the medium's model changes, so that files of the old one are not used.
-constexpr int kReferenceVersion = 2;
+constexpr int kReferenceVersion = 3;
 constexpr std::size_t kMemoryBytes = std::size_t{256} << 20;
 /// The reference, its mask and what FLIP keeps of it.
 constexpr std::size_t kBytesPerPixel = 128;
+
+/// What a file keeps of SurfaceStatistics, besides its counts.
+constexpr std::pair<const char*, double SurfaceStatistics::*> kStatistics[] = {
+    {"standard_error_max", &SurfaceStatistics::standard_error_max},
+    {"standard_error_mean", &SurfaceStatistics::standard_error_mean},
+    {"cut_weight_max", &SurfaceStatistics::cut_weight_max},
+    {"cut_weight_mean", &SurfaceStatistics::cut_weight_mean},
+    {"limited_weight_mean", &SurfaceStatistics::limited_weight_mean},
+    {"lost_weight_mean", &SurfaceStatistics::lost_weight_mean},
+    {"caustic_standard_error_max", &SurfaceStatistics::caustic_standard_error_max},
+    {"caustic_standard_error_mean", &SurfaceStatistics::caustic_standard_error_mean},
+    {"build_s", &SurfaceStatistics::build_s},
+    {"photons_s", &SurfaceStatistics::photons_s},
+    {"trace_s", &SurfaceStatistics::trace_s}};
 
 std::string number(double value) {
   return fmt::format("{}", value);
@@ -90,6 +105,10 @@ std::unique_ptr<Reference> ReferenceFiles::read(const std::string& key) const {
     reference->step_error_max = value("step_error_max");
     reference->step_error_mean = value("step_error_mean");
     reference->unconverged_share = value("unconverged_share");
+    for (const auto& [name, member] : kStatistics)
+      reference->surfaces.*member = value(name);
+    reference->surfaces.samples = static_cast<int>(value("samples"));
+    reference->surfaces.rays = static_cast<std::uint64_t>(value("rays"));
     const bool intact = in.attributes.at("pellucid.reference_key") == key &&
                         in.attributes.at("pellucid.pixels_sha256") == pixels_hash(*reference);
     if (intact) return reference;
@@ -114,6 +133,10 @@ void ReferenceFiles::write(const std::string& key, const Reference& reference) c
                     {"pellucid.step_error_mean", number(reference.step_error_mean)},
                     {"pellucid.unconverged_share", number(reference.unconverged_share)},
                     {"pellucid.commit", kCommit}};
+  for (const auto& [name, member] : kStatistics)
+    out.attributes[fmt::format("pellucid.{}", name)] = number(reference.surfaces.*member);
+  out.attributes["pellucid.samples"] = number(reference.surfaces.samples);
+  out.attributes["pellucid.rays"] = number(static_cast<double>(reference.surfaces.rays));
   write_exr(path(key), out, ExrPixel::single);
 }
 
@@ -138,8 +161,15 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
     return entries_.front().reference;
   }
 
-  const ReferenceSettings& settings = point.reference;
-  const SurfaceLayer surfaces = reference_surfaces(session, settings.surfaces);
+  const ReferenceSettings settings = settled(point.reference, session.scene().name, has_interfaces(session.scene()),
+                                             session.scene().volume.has_value());
+  // Traced surfaces follow from what the key holds and are not needed if the file is there.
+  const bool traced_surfaces = settings.surfaces == ReferenceSurfaces::rays;
+  std::optional<SurfaceLayer> made;
+  const auto surfaces = [&]() -> const SurfaceLayer& {
+    if (!made) made = reference_surfaces(session, settings, progress);
+    return *made;
+  };
   const Camera& camera = session.camera();
   ReferenceOptions options;
   options.tolerance = settings.tolerance;
@@ -150,19 +180,24 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
     Sha256 hash;
     hash.add(kind);
     hash.add(key_of(session, point));
-    hash.add(bytes_of(surfaces.radiance.pixels));
-    hash.add(std::as_bytes(std::span(surfaces.distance_m)));
+    if (traced_surfaces) {
+      hash.add(fmt::format("rays {} {} {} {} {}", settings.samples, settings.reflections, settings.cut,
+                           settings.caustics, settings.caustics ? settings.photons : 0));
+    } else {
+      hash.add(bytes_of(surfaces().radiance.pixels));
+      hash.add(std::as_bytes(std::span(surfaces().distance_m)));
+    }
     return hash.hex();
   };
   Reference exact =
-      traced(file_key("exact"), [&] { return render_reference(session.scene(), camera, surfaces, options); });
+      traced(file_key("exact"), [&] { return render_reference(session.scene(), camera, surfaces(), options); });
 
   std::vector<Region> regions;
   if (any_marked(exact.mask)) regions.push_back({"_mask", exact.mask});
   std::optional<double> shadow_pixels_share;
   if (settings.shadow_share > 0) {
     const Reference unshadowed = traced(file_key("unshadowed"), [&] {
-      return trace_unshadowed(load_again(point.scene, point.parameters), camera, surfaces, options);
+      return trace_unshadowed(load_again(point.scene, point.parameters), camera, surfaces(), options);
     });
     Image mask = shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
     shadow_pixels_share = marked_share(mask);
@@ -181,9 +216,10 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
   ComparisonOptions comparing;
   comparing.metrics = MetricSet(point.metrics);
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  auto cached = std::make_shared<CachedReference>(
-      CachedReference{Comparison(std::move(judge), regions, std::move(comparing)), exact.step_error_max,
-                      exact.step_error_mean, exact.unconverged_share, shadow_pixels_share, std::move(to_exact)});
+  auto cached = std::make_shared<CachedReference>(CachedReference{
+      Comparison(std::move(judge), regions, std::move(comparing)), exact.step_error_max, exact.step_error_mean,
+      exact.unconverged_share, traced_surfaces ? std::optional(exact.surfaces) : std::nullopt, shadow_pixels_share,
+      std::move(to_exact)});
   entries_.push_front({std::move(memory_key), pixels * kBytesPerPixel, cached});
   std::size_t total = 0;
   for (auto entry = entries_.begin(); entry != entries_.end();) {

@@ -21,6 +21,7 @@ struct CachedReference {
   double step_error_max = 0;  ///< of the exact one, as are the next two
   double step_error_mean = 0;
   double unconverged_share = 0;
+  std::optional<SurfaceStatistics> traced{};  ///< of surfaces from rays
   std::optional<double> shadow_pixels_share;  ///< of the frame that "_shadow" covers; nothing when it was not asked for
   /// How far the method's picture lies from the exact reference: rmse and flip_mean; nothing for the exact one itself.
   std::optional<ComparisonResult> to_exact;

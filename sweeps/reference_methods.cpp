@@ -22,9 +22,15 @@ Scene load_again(const std::string& scene, const std::map<std::string, Value>& p
   return loaded;
 }
 
-SurfaceLayer reference_surfaces(RenderSession& session, ReferenceSurfaces surfaces) {
-  if (surfaces == ReferenceSurfaces::rays) return trace_surfaces(session.scene(), session.camera());
-  return session.raster_surfaces(surfaces == ReferenceSurfaces::forward);
+SurfaceLayer reference_surfaces(RenderSession& session, const ReferenceSettings& settings,
+                                const std::function<void(double)>& progress) {
+  assert(settings.surfaces != ReferenceSurfaces::automatic);
+  if (settings.surfaces == ReferenceSurfaces::rays) {
+    SurfaceOptions options = surface_options(settings);
+    options.progress = progress;
+    return trace_surfaces(session.scene(), session.camera(), options);
+  }
+  return session.raster_surfaces(settings.surfaces == ReferenceSurfaces::forward);
 }
 
 Image draw_slices(const std::string& scene, const std::map<std::string, Value>& parameters, const std::string& view,

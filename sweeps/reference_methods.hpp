@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -15,8 +16,9 @@ namespace pellucid::sweeps {
 /// values of `parameters` whose names begin with "scene.".
 Scene load_again(const std::string& scene, const std::map<std::string, Value>& parameters);
 
-/// The opaque surfaces as the settings ask for them.
-SurfaceLayer reference_surfaces(RenderSession&, ReferenceSurfaces);
+/// The surfaces as the settings, settled, ask for them; `progress` is told the share done of what is traced.
+SurfaceLayer reference_surfaces(RenderSession&, const ReferenceSettings&,
+                                const std::function<void(double)>& progress = {});
 
 /// Imagire et al. 2007, Sec. 5: the picture of settings.slices slices in a frame of settings.format, RGBA. `parameters`
 /// are those of the frame to be judged, of which the shadow maps' and the scene's count.

@@ -40,15 +40,19 @@ void read_timing(const SpecReader& read, const toml::table& parent, TimingLimits
 void read_reference(const SpecReader& read, const toml::table& parent, ReferenceSettings& settings) {
   const toml::table* table = read.table(parent, "reference");
   if (table == nullptr) return;
-  read.allow(*table, {"method", "slices", "format", "surfaces", "tolerance", "max_steps", "shadow_share"}, "reference");
+  read.allow(*table,
+             {"method", "slices", "format", "surfaces", "tolerance", "max_steps", "shadow_share", "samples",
+              "reflections", "cut", "caustics", "photons"},
+             "reference");
   std::string text;
   if (read.text(*table, "method", text)) {
     read.one_of(*table->get("method"), text, {"exact", "slices"}, "method");
     settings.method = text == "exact" ? ReferenceMethod::exact : ReferenceMethod::slices;
   }
   if (read.text(*table, "surfaces", text)) {
-    read.one_of(*table->get("surfaces"), text, {"raster", "forward", "rays"}, "surfaces");
-    settings.surfaces = text == "raster"    ? ReferenceSurfaces::raster
+    read.one_of(*table->get("surfaces"), text, {"automatic", "raster", "forward", "rays"}, "surfaces");
+    settings.surfaces = text == "automatic" ? ReferenceSurfaces::automatic
+                        : text == "raster"  ? ReferenceSurfaces::raster
                         : text == "forward" ? ReferenceSurfaces::forward
                                             : ReferenceSurfaces::rays;
   }
@@ -65,6 +69,11 @@ void read_reference(const SpecReader& read, const toml::table& parent, Reference
   read.real(*table, "tolerance", 1e-9, 1, settings.tolerance);
   read.integer(*table, "max_steps", 64, 1'048'576, settings.max_steps);
   read.real(*table, "shadow_share", 0, 0.99, settings.shadow_share);
+  read.integer(*table, "samples", 1, 65'536, settings.samples);
+  read.integer(*table, "reflections", 0, 1024, settings.reflections);
+  read.real(*table, "cut", 0, 1, settings.cut);
+  read.boolean(*table, "caustics", settings.caustics);
+  read.integer(*table, "photons", 1024, 1 << 28, settings.photons);
 }
 
 void read_metrics(const SpecReader& read, const toml::table& table, std::vector<std::string>& metrics) {

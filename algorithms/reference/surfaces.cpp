@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -55,12 +58,16 @@ std::size_t pixel_index(const Camera& camera, int x, int y) {
 
 // Calls visit(x, y) for all pixels, in parallel. The tiles are small, since few of them may hold all the glass.
 template <class F>
-void for_pixels(const Camera& camera, F visit) {
+void for_pixels(const Camera& camera, const std::function<void(double)>& progress, F visit) {
+  const double pixels = static_cast<double>(camera.width) * camera.height;
+  std::atomic<std::int64_t> done{0};
   tbb::parallel_for(tbb::blocked_range2d<int>(0, camera.height, 8, 0, camera.width, 16), [&](const auto& tile) {
     for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
       for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
         visit(x, y);
     }
+    const auto in_tile = static_cast<std::int64_t>(tile.rows().size() * tile.cols().size());
+    if (progress) progress(static_cast<double>(done += in_tile) / pixels);
   });
 }
 
@@ -186,7 +193,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
 
   const auto trace_start = std::chrono::steady_clock::now();
   tbb::combinable<Sums> sums;
-  for_pixels(camera, [&](int x, int y) {
+  for_pixels(camera, options.progress, [&](int x, int y) {
     Sums& sum = sums.local();
     Mean radiance;
     TreeTally tally;
@@ -270,7 +277,7 @@ SurfaceLayer shade_surfaces(const Scene& scene, const Camera& camera, const Surf
   layer.radiance = Image(camera.width, camera.height, 3);
   layer.distance_m = points.distance_m;
   const glm::dvec3 origin(camera.view.eye);
-  for_pixels(camera, [&](int x, int y) {
+  for_pixels(camera, {}, [&](int x, int y) {
     const glm::dvec3 direction = camera.ray_direction(x + 0.5, y + 0.5);
     SurfacePoint point;
     point.distance = points.distance_m[pixel_index(camera, x, y)];

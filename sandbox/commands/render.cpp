@@ -38,6 +38,7 @@ struct Options {
   int max_steps = ReferenceOptions{}.max_steps;
   int slices = sweeps::ReferenceSettings{}.slices;
   double shadow_share = 0;
+  SurfaceOptions tracing;
   bool json = false;
 };
 
@@ -142,6 +143,8 @@ sweeps::ReferenceSettings reference_settings(const Options& options) {
   settings.max_steps = options.max_steps;
   settings.slices = options.slices;
   settings.shadow_share = options.shadow_share;
+  settings.samples = options.tracing.samples;
+  settings.caustics = options.tracing.caustics;
   return settings;
 }
 
@@ -180,13 +183,31 @@ ordered_json distance(const Image& exact, const Image& slices) {
   return {{"to_exact_flip_mean", result.at("flip_mean")}, {"to_exact_rmse", result.at("rmse")}};
 }
 
+/// What surfaces from rays cost, and their errors.
+ordered_json statistics_json(const SurfaceStatistics& s) {
+  return {{"standard_error_max", s.standard_error_max},
+          {"standard_error_mean", s.standard_error_mean},
+          {"caustic_standard_error_max", s.caustic_standard_error_max},
+          {"caustic_standard_error_mean", s.caustic_standard_error_mean},
+          {"cut_weight_max", s.cut_weight_max},
+          {"cut_weight_mean", s.cut_weight_mean},
+          {"limited_weight_mean", s.limited_weight_mean},
+          {"lost_weight_mean", s.lost_weight_mean},
+          {"rays", s.rays},
+          {"rays_per_s", s.rays_per_s()},
+          {"build_s", s.build_s},
+          {"photons_s", s.photons_s},
+          {"trace_s", s.trace_s}};
+}
+
 int reference(const Options& options) {
   const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
-  const sweeps::ReferenceSettings settings = reference_settings(options);
+  sweeps::ReferenceSettings settings = reference_settings(options);
   const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
   const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
   Scene scene = load_scene(options.scene);
+  settings = sweeps::settled(settings, scene.name, has_interfaces(scene), scene.volume.has_value());
   const std::map<std::string, Value> parameters = reference_parameters(options, scene, draws);
   const Camera camera{scene.find_view(options.view), size.width, size.height};
   ReferenceOptions tracing;
@@ -208,13 +229,15 @@ int reference(const Options& options) {
     for (const auto& [name, value] : parameters) {
       if (name.starts_with("shadow.")) session.assign(name, value);
     }
-    surfaces = sweeps::reference_surfaces(session, settings.surfaces);
+    surfaces = sweeps::reference_surfaces(session, settings);
     if (of_slices)
       slices = sweeps::draw_slices(options.scene, parameters, camera.view.name, size.width, size.height, settings);
     origin["device"] = context.device().renderer;
     origin["driver"] = context.device().version;
   } else {
-    surfaces = trace_surfaces(scene, camera);
+    SurfaceOptions rays = options.tracing;
+    rays.progress = tracing.progress;
+    surfaces = trace_surfaces(scene, camera, rays);
   }
   const Reference exact = render_reference(scene, camera, surfaces, tracing);
 
@@ -228,6 +251,19 @@ int reference(const Options& options) {
       {"scene", options.scene},         {"view", camera.view.name},     {"width", size.width},
       {"height", size.height},          {"surfaces", options.surfaces}, {"tolerance", options.tolerance},
       {"max_steps", options.max_steps}, {"parameters", shown}};
+  const bool from_rays = settings.surfaces == sweeps::ReferenceSurfaces::rays;
+  if (from_rays) {
+    const SurfaceOptions& rays = options.tracing;
+    recipe["samples"] = rays.samples;
+    recipe["reflections"] = rays.reflections;
+    recipe["cut"] = rays.cut;
+    recipe["caustics"] = rays.caustics;
+    if (rays.caustics) {
+      recipe["photons"] = rays.photons;
+      recipe["caustic_radius_m"] = rays.caustic_radius_m;
+    }
+    errors.update(statistics_json(exact.surfaces));
+  }
   ImageFile file;
   file.image = exact.image;
   file.layers["mask"] = exact.mask;
@@ -262,11 +298,48 @@ int reference(const Options& options) {
              of_slices ? fmt::format("{} slices in a frame of {} format", options.slices, options.format) : "reference",
              options.scene, size.width, size.height, exact.step_error_max, exact.step_error_mean,
              100 * exact.unconverged_share);
+  if (from_rays) {
+    const SurfaceStatistics& s = exact.surfaces;
+    fmt::print(
+        stderr,
+        "{}: {:.3g} s for {} rays ({:.3g} a second); standard error max {:.2g}, mean {:.2g}; weight left out max "
+        "{:.2g}, mean {:.2g}\n",
+        options.output.string(), s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
+        s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
+    if (s.lost_weight_mean > 0) {
+      fmt::print(
+          stderr,
+          "warning: rays leave a dielectric without meeting its surface ({:.2g} of the light): its mesh is open\n",
+          s.lost_weight_mean);
+    }
+  }
   if (of_slices) {
     fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", options.output.string(),
                errors.at("to_exact_flip_mean").get<double>(), errors.at("to_exact_rmse").get<double>());
   }
   return kDone;
+}
+
+void add_rays(CLI::App& app, SurfaceOptions& rays) {
+  app.add_option("--samples", rays.samples,
+                 "Rays a pixel, stratified over its square; 1 is its centre. The standard error is stated")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  app.add_option("--reflections", rays.reflections,
+                 "Most reflections inside a dielectric; light that needs more is dark")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--cut", rays.cut, "Share of a pixel's light below which a branch at an interface is left out")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_flag("--caustics", rays.caustics, "Light that reaches surfaces through objects, by photons");
+  app.add_option("--photons", rays.photons, "Of --caustics, for each light that casts shadows and each object")
+      ->check(CLI::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))
+      ->capture_default_str();
+  app.add_option("--caustic-radius", rays.caustic_radius_m,
+                 "Radius [m] over which a photon's light is spread; 0: 1 % of the largest object's")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
 }
 
 void add_common(CLI::App& app, Options& options) {
@@ -306,6 +379,7 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
           "rendering, with exact shadows; forward: with its shadow maps too, so that a metric sees the medium alone")
       ->check(CLI::IsMember({"rays", "raster", "forward"}))
       ->capture_default_str();
+  add_rays(*reference_app, truth->tracing);
   reference_app->add_option("--tolerance", truth->tolerance, "Change of radiance at which a pixel counts as converged")
       ->check(CLI::Range(1e-12, 1.0))
       ->capture_default_str();

@@ -22,6 +22,11 @@ Reference example() {
   reference.step_error_max = 1.0 / 3;
   reference.step_error_mean = 1e-17;
   reference.unconverged_share = 0.25;
+  reference.surfaces.samples = 64;
+  reference.surfaces.rays = (std::uint64_t{1} << 40) + 1;
+  reference.surfaces.standard_error_max = 1.0 / 7;
+  reference.surfaces.cut_weight_mean = 3e-9;
+  reference.surfaces.trace_s = 0.1;
   return reference;
 }
 
@@ -38,6 +43,11 @@ TEST(ReferenceFiles, KeepEveryBit) {
   EXPECT_EQ(read->step_error_max, reference.step_error_max);
   EXPECT_EQ(read->step_error_mean, reference.step_error_mean);
   EXPECT_EQ(read->unconverged_share, reference.unconverged_share);
+  EXPECT_EQ(read->surfaces.samples, 64);
+  EXPECT_EQ(read->surfaces.rays, reference.surfaces.rays);
+  EXPECT_EQ(read->surfaces.standard_error_max, reference.surfaces.standard_error_max);
+  EXPECT_EQ(read->surfaces.cut_weight_mean, reference.surfaces.cut_weight_mean);
+  EXPECT_EQ(read->surfaces.trace_s, reference.surfaces.trace_s);
 }
 
 TEST(ReferenceFiles, DamageIsNoticed) {

@@ -24,7 +24,12 @@ TEST(ReferenceSettings, SurviveJsonAndTellPointsApart) {
                                    .max_steps = 77,
                                    .slices = 512,
                                    .format = SlicesFormat::single,
-                                   .shadow_share = 0.05};
+                                   .shadow_share = 0.05,
+                                   .samples = 9,
+                                   .reflections = 3,
+                                   .cut = 0.25,
+                                   .caustics = true,
+                                   .photons = 4096};
   EXPECT_EQ(reference_settings(to_json(settings)), settings);
   EXPECT_NE(to_json(settings), to_json(ReferenceSettings{}));
   json broken = to_json(settings);
@@ -173,6 +178,10 @@ TEST(ReferenceSpec, RefusesWhatDoesNotGoTogether) {
   EXPECT_NE(error("slices=1024").find("s.toml:3:"), std::string::npos) << error("slices=1024");
   EXPECT_NE(error("method='slices'\nslices=5000").find("4096"), std::string::npos);
   EXPECT_NE(error("shadow_share=1.5").find("shadow_share"), std::string::npos);
+  EXPECT_NE(error("samples=0").find("samples"), std::string::npos);
+  EXPECT_NE(error("reflections=-1").find("reflections"), std::string::npos);
+  EXPECT_NE(error("photons=10").find("photons"), std::string::npos);
+  EXPECT_NE(error("caustics=1").find("caustics"), std::string::npos);
   EXPECT_NE(error("surfaces='fwd'").find("surfaces"), std::string::npos);
 }
 
