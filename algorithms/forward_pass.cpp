@@ -163,15 +163,30 @@ void ForwardPass::upload_lights(const Scene& scene) {
   }
   block.ambient_count = glm::vec4(scene.ambient, static_cast<float>(scene.lights.size()));
   lights_.upload(std::span<const LightBlock>(&block, 1));
-  compile();
+  compile(scene.lights);
 }
 
-void ForwardPass::compile() {
-  const gl::Defines defines = shadowed_ ? gl::Defines{{"SHADOWS", "1"}} : gl::Defines{};
-  if (opaque_ && defines == opaque_defines_) return;
+void ForwardPass::compile(const std::vector<Light>& lights) {
+  const std::vector<int> layers = shadow_layers(lights);
+  // One entry for each light that there may be: GLSL has no empty arrays.
+  std::string kinds, first_layers, beyond_map;
+  for (std::size_t i = 0; i < kMaxLights; ++i) {
+    const char* comma = i == 0 ? "" : ", ";
+    const bool given = i < lights.size();
+    kinds += comma + std::to_string(given ? static_cast<int>(lights[i].kind) : 0);
+    first_layers += comma + std::to_string(given ? layers[i] : -1);
+    beyond_map += std::string(comma) + (given && lit_beyond_map(lights[i]) ? "true" : "false");
+  }
+  gl::Defines defines{{"LIGHT_COUNT", std::to_string(lights.size())}, {"LIGHT_KINDS", kinds}};
+  if (shadowed_) {
+    defines.insert(defines.end(), {{"SHADOWS", "1"}, {"SHADOW_LAYERS", first_layers}, {"LIT_BEYOND_MAP", beyond_map}});
+  } else if (uniform_lighting_) {
+    defines.emplace_back("UNIFORM_SOURCE", "1");
+  }
+  if (opaque_ && defines == light_defines_) return;
   opaque_ = gl::Program(
       "opaque", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/shaders/common/opaque.frag.glsl"}, defines);
-  opaque_defines_ = defines;
+  light_defines_ = std::move(defines);
 }
 
 void ForwardPass::update_shadows(const Scene& scene, const ShadowSettings& settings) {
@@ -181,12 +196,6 @@ void ForwardPass::update_shadows(const Scene& scene, const ShadowSettings& setti
     draw_geometry(world_to_clip, program, Objects::all);
   });
   shadow_revision_ = revision_;
-}
-
-gl::Defines ForwardPass::light_defines() const {
-  if (shadowed_) return {{"SHADOWS", "1"}};
-  if (uniform_lighting_) return {{"UNIFORM_SOURCE", "1"}};
-  return {};
 }
 
 void ForwardPass::upload_environment(const Scene& scene) {
@@ -333,9 +342,11 @@ void ForwardPass::draw_geometry(const glm::mat4& world_to_clip, const gl::Progra
 
 void ForwardPass::draw_surface_points(const Camera& camera) {
   if (!surface_points_) {
+    gl::Defines defines = light_defines_;
+    defines.emplace_back("SURFACE_POINTS", "1");
     surface_points_ = gl::Program(
         "surface points", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/shaders/common/opaque.frag.glsl"},
-        {{"SURFACE_POINTS", "1"}});
+        defines);
   }
   surface_points_.set("eye", camera.view.eye);
   draw_geometry(camera, surface_points_);

@@ -61,11 +61,11 @@ class ForwardPass {
 
   /// Binds what lighting.glsl and shadows.glsl read: the lights' uniform block, and shadow maps where there are any.
   void bind_lights() const;
-  /// ambient + Σ E / 4π where no light depends on the place (medium_radiance() of lighting.glsl).
+  /// ambient + Σ E / 4π where no light depends on the place (medium_source() of medium.glsl).
   const glm::vec3& uniform_incident() const { return uniform_incident_; }
-  /// The defines that a program which includes them must be compiled with: SHADOWS where a light casts shadows, or
-  /// UNIFORM_SOURCE where no light's irradiance depends on the place.
-  gl::Defines light_defines() const;
+  /// The defines that a program which includes them must be compiled with: number and kinds of the lights, SHADOWS and
+  /// their shadow maps where a light casts shadows, or UNIFORM_SOURCE where no light's irradiance depends on the place.
+  const gl::Defines& light_defines() const { return light_defines_; }
   std::string reload_shaders();
 
  private:
@@ -94,7 +94,7 @@ class ForwardPass {
   void gather_instances(const Scene&);
   void upload_lights(const Scene&);
   void upload_environment(const Scene&);
-  void compile();
+  void compile(const std::vector<Light>&);
   static InstanceAttributes attributes(const Scene&, const Instance&);
   Batch make_batch(std::size_t mesh, std::span<const InstanceAttributes>) const;
   const Visible& visible(const glm::mat4& world_to_clip, Objects) const;
@@ -116,7 +116,7 @@ class ForwardPass {
   ShadowMaps shadows_;
   std::optional<std::uint64_t> shadow_revision_;
   bool shadowed_ = false;  // some light casts shadows
-  gl::Defines opaque_defines_;
+  gl::Defines light_defines_;
   gl::Program opaque_, background_, surface_points_;
   gl::VertexArray fullscreen_;
 };

@@ -73,13 +73,17 @@ Medium::Medium(const Scene& scene, const char* technique) {
   const std::string label = volume.name + " density";
   density_ = density_unit_ == 1 ? make_map(label, volume.size, volume.density)
                                 : make_map(label, volume.size, in_unit(volume.density, density_unit_));
-  if (volume.light >= 0) scattering_ = make_map(volume.name + " scattering", volume.size, volume.scattering);
+  light_ = volume.light;
+  if (light_ >= 0) scattering_ = make_map(volume.name + " scattering", volume.size, volume.scattering);
   if (!volume.transfer.empty()) {
     transfer_ = gl::Texture::make_2d(volume.name + " transfer", gl::Format::rgba32f, kTransferTexels, 1);
     transfer_.upload(tabulate(volume.transfer));
     transfer_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
     const float low = volume.transfer.front().density;
-    transfer_range_ = {low / density_unit_, density_unit_ / (volume.transfer.back().density - low)};
+    // The least density lies at the centre of the first texel, the greatest at that of the last.
+    const float texels = (kTransferTexels - 1) / (volume.transfer.back().density - low);
+    transfer_scale_offset_ =
+        glm::vec2(texels * density_unit_, 0.5F - low * texels) / static_cast<float>(kTransferTexels);
   }
 }
 
@@ -88,12 +92,16 @@ gl::Defines Medium::defines(gl::Defines light_defines) const {
   // The source then depends on the place, whatever the lights do.
   std::erase_if(light_defines, [](const auto& define) { return define.first == "UNIFORM_SOURCE"; });
   if (transfer_) light_defines.emplace_back("TRANSFER", "1");
-  if (scattering_) light_defines.emplace_back("LIGHT_SPACE", "1");
+  if (scattering_) light_defines.emplace_back("LIGHT_SPACE", std::to_string(light_));
   return light_defines;
 }
 
-void Medium::bind(const gl::Program& program, const Volume& volume, const glm::vec3& incident) const {
+void Medium::bind(const gl::Program& program, const Volume& volume, const Camera& camera,
+                  const glm::vec3& incident) const {
   density_.bind(0);
+  program.set("local_to_clip", camera.projection() * camera.world_to_view() * volume.to_world);
+  program.set("world_to_local", glm::inverse(volume.to_world));
+  program.set("eye", camera.view.eye);
   program.set("volume_to_world", volume.to_world);
   program.set("volume_extinction", transfer_ ? volume.extinction : volume.extinction * density_unit_);
   program.set("volume_albedo", volume.albedo);
@@ -101,12 +109,33 @@ void Medium::bind(const gl::Program& program, const Volume& volume, const glm::v
   program.set("uniform_source", volume.emission + volume.albedo * incident);
   if (transfer_) {
     transfer_.bind(3);
-    program.set("transfer_range", transfer_range_);
+    program.set("transfer_scale_offset", transfer_scale_offset_);
   }
-  if (scattering_) {
-    scattering_.bind(4);
-    program.set("volume_light", volume.light);
+  if (scattering_) scattering_.bind(4);
+}
+
+bool BoxGeometry::fit(const Volume& volume, const Camera& camera, BoxCut way, int count) {
+  const Key key{camera.world_to_view(), volume.to_world, camera.view.near_m, way, count};
+  if (key_ == key) return false;
+  upload(cut(key, camera.view.eye));
+  key_ = key;
+  return true;
+}
+
+BoxPieces BoxGeometry::cut(const Key& key, const glm::vec3& eye) {
+  const BoxDepth depth(key.to_world, key.world_to_view);
+  const auto range = depth_range(depth, static_cast<double>(key.near_m));
+  if (!range) return {};
+  if (key.cut == BoxCut::hulls) return cut_hulls(depth, *range, key.count);
+  if (key.cut == BoxCut::image_slices) {
+    slab_m_ = static_cast<float>((range->back - range->front) / key.count);
+    slab_axis_ = -glm::vec3(key.world_to_view[0].z, key.world_to_view[1].z, key.world_to_view[2].z);
+    return cut_slices(depth, *range, key.count);
   }
+  ObjectSlices slices = cut_object_slices(key.to_world, key.world_to_view, eye, key.count);
+  slab_m_ = slices.slab_m;
+  slab_axis_ = slices.axis;
+  return std::move(slices.polygons);
 }
 
 void BoxGeometry::upload(BoxPieces box) {

@@ -13,12 +13,16 @@
 namespace pellucid {
 namespace {
 
-constexpr int kMaxLayers = 6 * kMaxLights;
+constexpr int kCubeLayers = 6;
+constexpr float kWidestMapDeg = 85.0F;  // half-angle of a spot's map
 
 // shadows.glsl's std140 block.
 struct ShadowBlock {
-  std::array<glm::mat4, kMaxLayers> world_to_shadow;
-  std::array<glm::vec4, kMaxLights> first_layer_range;
+  struct Entry {
+    std::array<glm::vec4, 3> to_map;
+    glm::vec4 range;
+  };
+  std::array<Entry, kMaxLights> shadows;
   glm::vec4 bleeding_variance;
 };
 
@@ -31,44 +35,61 @@ float farthest(const Bounds& bounds, const glm::vec3& from) {
   return glm::length(reach);
 }
 
+glm::vec4 row(const glm::mat4& m, int i) {
+  return {m[0][i], m[1][i], m[2][i], m[3][i]};
+}
+
 }  // namespace
+
+std::vector<int> shadow_layers(const std::vector<Light>& lights) {
+  std::vector<int> first;
+  int layers = 0;
+  for (const Light& light : lights) {
+    first.push_back(light.casts_shadow ? layers : -1);
+    if (light.casts_shadow) layers += light.kind == LightKind::point ? kCubeLayers : 1;
+  }
+  return first;
+}
+
+bool lit_beyond_map(const Light& light) {
+  return light.kind == LightKind::spot && light.outer_angle_deg > kWidestMapDeg;
+}
 
 void ShadowMaps::fit(const Scene& scene, const ShadowSettings& settings) {
   layers_.clear();
-  first_layer_.assign(scene.lights.size(), -1);
+  first_layer_ = shadow_layers(scene.lights);
   const Bounds bounds = world_bounds(scene);
   const glm::vec3 center = 0.5F * (bounds.min + bounds.max);
   const float radius = 0.5F * glm::length(bounds.max - bounds.min);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
+  // A margin of the blur's reach keeps its filter off a map's border.
+  const float margin = 1 + 2 * (3 * settings.blur + 1) / static_cast<float>(settings.size);
+  for (const Light& light : scene.lights) {
     if (!light.casts_shadow) continue;
-    first_layer_[i] = static_cast<int>(layers_.size());
     if (light.kind == LightKind::directional) {
       // A sphere about the scene, seen along the light; depth runs from the sphere's near side.
       const glm::vec3 origin = center - light.direction * radius;
       const glm::mat4 view = glm::lookAt(origin, center, any_perpendicular(light.direction));
       const glm::mat4 projection = glm::ortho(-radius, radius, -radius, radius, 0.0F, 2 * radius);
-      layers_.push_back({projection * view, origin, light.direction, 2 * radius});
+      layers_.push_back({projection * view, origin, light.direction, 2 * radius, 1.0F});
       continue;
     }
     const float range = std::max(farthest(bounds, light.position), 1e-3F);
     const float near = range * 1e-3F;
     if (light.kind == LightKind::spot) {
-      // A margin of the blur's reach keeps its filter off the map's border.
-      const float half = std::min(glm::radians(light.outer_angle_deg), glm::radians(85.0F));
-      const float margin = 1 + 2 * (3 * settings.blur + 1) / static_cast<float>(settings.size);
-      const float fov = 2 * std::atan(std::tan(half) * margin);
+      const float extent = std::tan(glm::radians(std::min(light.outer_angle_deg, kWidestMapDeg))) * margin;
+      const float fov = 2 * std::atan(extent);
       const glm::mat4 view =
           glm::lookAt(light.position, light.position + light.direction, any_perpendicular(light.direction));
-      layers_.push_back({glm::perspective(fov, 1.0F, near, range) * view, light.position, glm::vec3(0.0F), range});
+      layers_.push_back(
+          {glm::perspective(fov, 1.0F, near, range) * view, light.position, glm::vec3(0.0F), range, extent});
       continue;
     }
-    const float margin = 1 + 2 * (3 * settings.blur + 1) / static_cast<float>(settings.size);
     const float fov = 2 * std::atan(margin);
     for (const glm::vec3& axis : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
                                   glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)}) {
       const glm::mat4 view = glm::lookAt(light.position, light.position + axis, any_perpendicular(axis));
-      layers_.push_back({glm::perspective(fov, 1.0F, near, range) * view, light.position, glm::vec3(0.0F), range});
+      layers_.push_back(
+          {glm::perspective(fov, 1.0F, near, range) * view, light.position, glm::vec3(0.0F), range, margin});
     }
   }
 }
@@ -101,21 +122,7 @@ void ShadowMaps::update(const Scene& scene, const ShadowSettings& settings, cons
   }
   allocate(settings);
 
-  ShadowBlock block{};
-  block.bleeding_variance = glm::vec4(settings.bleeding, settings.min_variance, 0, 0);
-  for (std::size_t i = 0; i < layers_.size(); ++i)
-    block.world_to_shadow[i] = layers_[i].world_to_clip;
-  for (std::size_t i = 0; i < kMaxLights; ++i) {
-    const int first = i < first_layer_.size() ? first_layer_[i] : -1;
-    const float range = first < 0 ? 1.0F : layers_[static_cast<std::size_t>(first)].range_m;
-    // A directional light's depth is measured from the world's origin in the shader.
-    const float offset = first < 0 ? 0.0F
-                                   : glm::dot(layers_[static_cast<std::size_t>(first)].origin,
-                                              layers_[static_cast<std::size_t>(first)].axis);
-    block.first_layer_range[i] = glm::vec4(static_cast<float>(first), 1 / range, offset, 0);
-  }
-  block_.upload(std::span<const ShadowBlock>(&block, 1));
-
+  upload(scene, settings);
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     layer_framebuffers_[i].bind();
     layer_framebuffers_[i].clear_color(0, {1, 1, 0, 0});
@@ -125,6 +132,22 @@ void ShadowMaps::update(const Scene& scene, const ShadowSettings& settings, cons
     draw(layers_[i].world_to_clip, draw_);
   }
   if (settings.blur > 0) blur(settings);
+}
+
+void ShadowMaps::upload(const Scene& scene, const ShadowSettings& settings) {
+  ShadowBlock block{};
+  block.bleeding_variance = glm::vec4(settings.bleeding, 1 / (1 - settings.bleeding), settings.min_variance, 0);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (first_layer_[i] < 0) continue;
+    const Layer& layer = layers_[static_cast<std::size_t>(first_layer_[i])];
+    ShadowBlock::Entry& out = block.shadows[i];
+    // From [−1, 1] to texture coordinates.
+    out.to_map[0] = 0.5F * (row(layer.world_to_clip, 0) + row(layer.world_to_clip, 3));
+    out.to_map[1] = 0.5F * (row(layer.world_to_clip, 1) + row(layer.world_to_clip, 3));
+    out.to_map[2] = glm::vec4(layer.axis, -glm::dot(layer.origin, layer.axis)) / layer.range_m;
+    out.range = glm::vec4(1 / layer.range_m, 0.5F / layer.tan_half_angle, 0, 0);
+  }
+  block_.upload(std::span<const ShadowBlock>(&block, 1));
 }
 
 void ShadowMaps::blur(const ShadowSettings& settings) {

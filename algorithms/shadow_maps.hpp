@@ -44,6 +44,11 @@ struct ShadowSettings {
 };
 static_assert(well_formed<ShadowSettings>());
 
+/// The first layer of each light's shadow maps, −1 for a light that casts no shadow.
+std::vector<int> shadow_layers(const std::vector<Light>&);
+/// True for a spot of a wider cone than its shadow map can see; beyond the map it casts no shadow.
+bool lit_beyond_map(const Light&);
+
 /// Variance shadow maps of the lights that cast shadows: one layer of depth moments for a directional or spot light,
 /// six with a guard band for a point light.
 class ShadowMaps {
@@ -65,9 +70,11 @@ class ShadowMaps {
     glm::vec3 origin{0.0F};
     glm::vec3 axis{0.0F};  ///< depth along it for directional lights, zero where depth is a distance
     float range_m = 1;
+    float tan_half_angle = 1;  ///< of what the map sees, where depth is a distance
   };
   void fit(const Scene&, const ShadowSettings&);
   void allocate(const ShadowSettings&);
+  void upload(const Scene&, const ShadowSettings&);
   void blur(const ShadowSettings&);
 
   std::vector<Layer> layers_;

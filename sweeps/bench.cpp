@@ -97,10 +97,9 @@ class BareHulls {
 
  private:
   void cut(const HullCounts& counts) {
+    geometry_.fit(*scene_.volume, camera_, BoxCut::hulls, counts.hulls);
     const glm::mat4 world_to_view = camera_.world_to_view();
-    const BoxDepth depth(scene_.volume->to_world, world_to_view);
-    const auto range = depth_range(depth, camera_.view.near_m);
-    geometry_.upload(range ? cut_hulls(depth, *range, counts.hulls) : BoxPieces{});
+    const auto range = depth_range(BoxDepth(scene_.volume->to_world, world_to_view), camera_.view.near_m);
     if (!range) return;
     const glm::vec3 axis = -glm::vec3(world_to_view[0][2], world_to_view[1][2], world_to_view[2][2]);
     const auto step_m = static_cast<float>((range->back - range->front) / (counts.hulls * counts.samples));
@@ -129,17 +128,15 @@ class BareHulls {
 
   // The state and the draws of sampling_hulls.cpp.
   void begin_hulls() {
-    const glm::mat4 local_to_clip = camera_.projection() * camera_.world_to_view() * scene_.volume->to_world;
     glEnable(GL_DEPTH_CLAMP);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     glEnable(GL_CULL_FACE);
     glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
-    back_.set("local_to_clip", local_to_clip);
-    front_.set("local_to_clip", local_to_clip);
+    back_.set("local_to_clip", camera_.projection() * camera_.world_to_view() * scene_.volume->to_world);
     front_.set("step_local", step_local_);
-    medium_.bind(front_, *scene_.volume, glm::vec3(0.0F));  // it only sums
+    medium_.bind(front_, *scene_.volume, camera_, glm::vec3(0.0F));  // it only sums
     map_.bind(1);
     forward_.bind_lights();
   }

@@ -39,16 +39,14 @@ class RayMarching final : public Technique {
     compile(medium_->defines(forward.light_defines()));
     const Volume& volume = *scene.volume;
     const glm::mat4 world_to_view = camera.world_to_view();
-    const BoxDepth depth(volume.to_world, world_to_view);
-    const auto range = depth_range(depth, camera.view.near_m);
+    geometry_.fit(volume, camera, BoxCut::hulls, 1);
     {
       auto pass = timer.pass("opaque");
       with_distance_.bind();
       forward.draw_shaded(camera, false);
     }
-    if (!range) return;
+    if (geometry_.pieces() == 0) return;
     auto pass = timer.pass("march");
-    geometry_.upload(cut_hulls(depth, *range, 1));
     color_only_.bind();
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_DEPTH_CLAMP);
@@ -56,14 +54,11 @@ class RayMarching final : public Technique {
     glCullFace(GL_FRONT);
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
-    program_.set("local_to_clip", camera.projection() * world_to_view * volume.to_world);
-    program_.set("world_to_local", glm::inverse(volume.to_world));
-    program_.set("eye", camera.view.eye);
     program_.set("view_axis", -glm::vec3(world_to_view[0].z, world_to_view[1].z, world_to_view[2].z));
     program_.set("near_m", camera.view.near_m);
-    program_.set("samples", parameters_.samples);
-    program_.set("sample_offset", parameters_.sample_offset);
-    medium_->bind(program_, volume, forward.uniform_incident());
+    program_.set("path_sample_count", parameters_.samples);
+    program_.set("path_sample_offset", parameters_.sample_offset);
+    medium_->bind(program_, volume, camera, forward.uniform_incident());
     forward.bind_lights();
     distance_.bind(1);
     program_.use();
@@ -93,7 +88,7 @@ class RayMarching final : public Technique {
     }
     if (program_ && defines == defines_) return;
     program_ = gl::Program(
-        "march", {"algorithms/shaders/common/box.vert.glsl", "algorithms/ray_marching/march.frag.glsl"}, defines);
+        "march", {"algorithms/shaders/common/medium.vert.glsl", "algorithms/ray_marching/march.frag.glsl"}, defines);
     defines_ = std::move(defines);
   }
 

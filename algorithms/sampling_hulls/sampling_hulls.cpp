@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,8 @@ namespace pellucid::sampling_hulls {
 namespace {
 
 constexpr const char* kName = "sampling_hulls";
+// Up to here the points of a path are written out one by one; compiling takes longer with each.
+constexpr int kMostUnrolledSamples = 8;
 
 class SamplingHulls final : public Technique {
  public:
@@ -36,14 +39,13 @@ class SamplingHulls final : public Technique {
     fit_map(target);
     compile(medium_->defines(forward.light_defines()));
     const Volume& volume = *scene.volume;
-    const glm::mat4 world_to_local = glm::inverse(volume.to_world);
-    cut(volume, camera);
+    geometry_.fit(volume, camera, BoxCut::hulls, parameters_.hulls);
 
     // Step 1: opaque objects into the local-coordinates map.
     {
       auto pass = timer.pass("coordinates");
       map_framebuffer_.bind();
-      coordinates_.set("world_to_local", world_to_local);
+      coordinates_.set("world_to_local", glm::inverse(volume.to_world));
       forward.draw_geometry(camera, coordinates_);
     }
     // Step 2: opaque objects into the back buffer, with the depth of step 1.
@@ -55,7 +57,6 @@ class SamplingHulls final : public Technique {
     // Steps 3 to 2 + 2M: for each hull, back to front, its back faces into the map and its front faces into the back
     // buffer.
     auto pass = timer.pass("hulls");
-    const glm::mat4 local_to_clip = camera.projection() * camera.world_to_view() * volume.to_world;
     // All vertices lie at or behind the near plane; clamping keeps rounding from cutting holes into a cap that lies in
     // it, and the far plane from cutting the volume.
     glEnable(GL_DEPTH_CLAMP);
@@ -64,12 +65,9 @@ class SamplingHulls final : public Technique {
     glDepthMask(GL_FALSE);
     glEnable(GL_CULL_FACE);
     glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);  // A × BackBuffer + C
-    back_.set("local_to_clip", local_to_clip);
-    front_.set("local_to_clip", local_to_clip);
-    front_.set("world_to_local", world_to_local);
-    front_.set("eye", camera.view.eye);
-    front_.set("sample_offset", parameters_.sample_offset);
-    medium_->bind(front_, volume, forward.uniform_incident());
+    back_.set("local_to_clip", camera.projection() * camera.world_to_view() * volume.to_world);
+    front_.set("path_sample_offset", parameters_.sample_offset);
+    medium_->bind(front_, volume, camera, forward.uniform_incident());
     map_.bind(1);
     forward.bind_lights();
     for (int hull = 0; hull < geometry_.pieces(); ++hull) {
@@ -119,30 +117,19 @@ class SamplingHulls final : public Technique {
                           {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/back.frag.glsl"});
     }
     defines.emplace_back("SAMPLES", fmt::to_string(parameters_.samples));
+    if (parameters_.samples <= kMostUnrolledSamples) {
+      std::string each;
+      for (int i = 0; i < parameters_.samples; ++i)
+        each += fmt::format("SAMPLE({}) ", i);
+      defines.emplace_back("EACH_SAMPLE", each);
+    }
     if (parameters_.filter_occlusion) defines.emplace_back("FILTER_OCCLUSION", "1");
     if (front_ && defines == front_defines_) return;
-    front_ =
-        gl::Program("hull front",
-                    {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/front.frag.glsl"}, defines);
+    front_ = gl::Program("hull front",
+                         {"algorithms/shaders/common/medium.vert.glsl", "algorithms/sampling_hulls/front.frag.glsl"},
+                         defines);
     front_defines_ = std::move(defines);
   }
-
-  // Cuts the box anew only when view, volume or M changed.
-  void cut(const Volume& volume, const Camera& camera) {
-    const CutKey key{camera.world_to_view(), volume.to_world, camera.view.near_m, parameters_.hulls};
-    if (cut_ == key) return;
-    const BoxDepth depth(volume.to_world, key.world_to_view);
-    const auto range = depth_range(depth, key.near_m);
-    geometry_.upload(range ? cut_hulls(depth, *range, key.hulls) : BoxPieces{});
-    cut_ = key;
-  }
-
-  struct CutKey {
-    glm::mat4 world_to_view, to_world;
-    float near_m;
-    int hulls;
-    bool operator==(const CutKey&) const = default;
-  };
 
   Parameters parameters_;
   std::optional<Medium> medium_;
@@ -153,7 +140,6 @@ class SamplingHulls final : public Technique {
   gl::Program coordinates_, back_, front_;
   gl::Defines front_defines_;
   BoxGeometry geometry_;
-  std::optional<CutKey> cut_;
 };
 
 }  // namespace

@@ -1,8 +1,4 @@
-// The loop of integrate.glsl over a medium, a source and shadows that the test knows: its calls of medium.glsl are turned
-// to these.
-#include "algorithms/shaders/common/medium.glsl"
-#include "algorithms/shaders/common/valid_path.glsl"
-
+// The loop of integrate.glsl over a medium, a source and shadows that the test knows, in medium.glsl's place.
 layout(local_size_x = 64) in;
 
 struct Path {
@@ -14,16 +10,22 @@ layout(std430, binding = 1) writeonly buffer Outputs { vec4 outputs[]; };
 
 Path path;
 
-vec4 known_visibility(vec3 p) {
-  vec4 at = vec4(p.x);
+struct MediumPoint {
+  float extinction;
+  vec3 albedo;
+};
+struct MediumPath {
+  vec3 front, front_per_m;
+};
+
+vec3 medium_place(MediumPath along, float t) { return along.front + t * along.front_per_m; }
+vec4 medium_visibility(MediumPath along, float t) {
+  vec4 at = vec4(t);
   return mix(step(at, path.shadow_edges), step(-path.shadow_edges, at), lessThan(path.shadow_edges, vec4(0.0)));
 }
-MediumPoint known_medium(vec3 p) { return MediumPoint(path.length_samples_offset_extinction.w * (1.0 + p.x), vec3(1.0)); }
-vec3 known_source(vec3 p, vec3 albedo, vec4 visible) { return albedo * visible.xyz + vec3(visible.w, 0.0, 0.0); }
+MediumPoint medium_at(vec3 p) { return MediumPoint(path.length_samples_offset_extinction.w * (1.0 + p.x), vec3(1.0)); }
+vec3 medium_source(MediumPath along, float t, vec3 albedo, vec4 visible) { return albedo * visible.xyz + vec3(visible.w, 0.0, 0.0); }
 
-#define medium_visibility known_visibility
-#define medium_at known_medium
-#define medium_source known_source
 #define FILTER_OCCLUSION
 #include "algorithms/shaders/common/integrate.glsl"
 
@@ -32,5 +34,5 @@ void main() {
   if (k >= paths.length()) return;
   path = paths[k];
   vec4 q = path.length_samples_offset_extinction;
-  outputs[k] = integrate_path(vec3(0.0), vec3(1.0, 0.0, 0.0), q.x, int(q.y), q.z);
+  outputs[k] = integrate_path(MediumPath(vec3(0.0), vec3(1.0, 0.0, 0.0)), q.x, int(q.y), q.z);
 }

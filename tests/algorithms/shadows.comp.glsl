@@ -1,5 +1,5 @@
 // Runs the occlusion functions that have C++ twins on the inputs of the test.
-#include "algorithms/shaders/common/shadows.glsl"
+#include "algorithms/shaders/common/occlusion.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -15,5 +15,5 @@ void main() {
   if (k >= inputs.length()) return;
   vec4 m = inputs[k].moments_depth_variance, r = inputs[k].amount_rates;
   float bound = chebyshev_bound(m.xy, m.z, m.w);
-  outputs[k] = vec4(bound, reduce_bleeding(r.w, r.x), filtered_occlusion(vec4(r.y), vec4(r.z), vec4(r.w)).x, 0.0);
+  outputs[k] = vec4(bound, reduce_bleeding(r.w, vec2(r.x, 1.0 / (1.0 - r.x))), filtered_occlusion(vec4(r.y), vec4(r.z), vec4(r.w)).x, 0.0);
 }

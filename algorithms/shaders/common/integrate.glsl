@@ -1,40 +1,55 @@
-// The medium along a path, back to front over equally spaced points (Imagire et al. 2007, Sec. 3.2, 3.3 and Fig. 7).
-#include "algorithms/shaders/common/medium.glsl"
+// The medium along a path, back to front over equally spaced points (Imagire et al. 2007, Sec. 3.2, 3.3 and Fig. 7). The
+// includer has medium.glsl's MediumPath and what asks it.
+#include "algorithms/shaders/common/occlusion.glsl"
+#include "algorithms/shaders/common/opacity.glsl"
 #include "algorithms/shaders/common/valid_path.glsl"
 
-// `front`: local coordinates of the path's nearer end; `ray_local`: one metre along the viewing ray in local coordinates.
+#ifndef UNIFORM_SOURCE
+struct PathSum {
+  vec3 color;  // C
+  float transmittance;  // A
+  vec4 half_way;  // light that reaches the half-way point behind the next
+};
+
+// The i-th of `count` points, back to front: C = A0·C0 + (1 − A0)·C, A = (1 − A0)·A.
+void add_point(inout PathSum sum, MediumPath path, float path_length, float i, float count, float sample_offset) {
+  float t = sample_distance(path_length, i, count, sample_offset);
+  vec4 visible = medium_visibility(path, t);
+#ifdef FILTER_OCCLUSION
+  vec4 next = medium_visibility(path, half_way_distance(path_length, i + 1.0, count, sample_offset));
+  visible = filtered_occlusion(sum.half_way, visible, next);
+  sum.half_way = next;
+#endif
+  MediumPoint medium = medium_at(medium_place(path, t));
+  float opacity = step_opacity(medium.extinction, path_length / count);  // over Δd of this pixel, Eq. 2
+  sum.color = mix(sum.color, medium_source(path, t, medium.albedo, visible), opacity);
+  sum.transmittance *= 1.0 - opacity;
+}
+#endif
+
 // Returns C and A of the path: what is behind becomes A × behind + C.
-vec4 integrate_path(vec3 front, vec3 ray_local, float path_length, int samples, float sample_offset) {
+vec4 integrate_path(MediumPath path, float path_length, int samples, float sample_offset) {
   float count = float(samples);
-  float step = path_length / count;  // Δd of this pixel, Eq. 2
-  // Back to front over the points: C = A0·C0 + (1 − A0)·C, A = (1 − A0)·A.
 #ifdef UNIFORM_SOURCE
   // With one C0 for all points, C = C0·(1 − A), and A = Π exp(−φ Δd) needs one exponential instead of N.
   float extinction = 0.0;
   for (int i = 0; i < samples; ++i) {
-    extinction += medium_at(front + ray_local * sample_distance(path_length, float(i), count, sample_offset)).extinction;
+    extinction += medium_at(medium_place(path, sample_distance(path_length, float(i), count, sample_offset))).extinction;
   }
-  float opacity = step_opacity(extinction, step);
-  return vec4(opacity * medium_source(front, volume_albedo, vec4(1.0)), 1.0 - opacity);
+  float opacity = step_opacity(extinction, path_length / count);
+  return vec4(opacity * medium_source(path, 0.0, vec3(1.0), vec4(1.0)), 1.0 - opacity);
 #else
-  vec3 color = vec3(0.0);
-  float transmittance = 1.0;
+  PathSum sum = PathSum(vec3(0.0), 1.0, vec4(1.0));
 #ifdef FILTER_OCCLUSION
-  vec4 half_way = medium_visibility(front + ray_local * half_way_distance(path_length, 0.0, count, sample_offset));
+  sum.half_way = medium_visibility(path, half_way_distance(path_length, 0.0, count, sample_offset));
 #endif
-  for (int i = 0; i < samples; ++i) {
-    vec3 p = front + ray_local * sample_distance(path_length, float(i), count, sample_offset);
-    vec4 visible = medium_visibility(p);
-#ifdef FILTER_OCCLUSION
-    vec4 next = medium_visibility(front + ray_local * half_way_distance(path_length, float(i) + 1.0, count, sample_offset));
-    visible = filtered_occlusion(half_way, visible, next);
-    half_way = next;
+#ifdef EACH_SAMPLE
+  // "SAMPLE(0) SAMPLE(1) …" instead of the loop where they are few: a software rasteriser masks all that a loop carries.
+#define SAMPLE(i) add_point(sum, path, path_length, float(i), count, sample_offset);
+  EACH_SAMPLE
+#else
+  for (int i = 0; i < samples; ++i) add_point(sum, path, path_length, float(i), count, sample_offset);
 #endif
-    MediumPoint medium = medium_at(p);
-    float opacity = step_opacity(medium.extinction, step);
-    color = mix(color, medium_source(p, medium.albedo, visible), opacity);
-    transmittance *= 1.0 - opacity;
-  }
-  return vec4(color, transmittance);
+  return vec4(sum.color, sum.transmittance);
 #endif
 }

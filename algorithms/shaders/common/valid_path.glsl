@@ -1,9 +1,9 @@
 // The valid sampling path of a viewing ray in a hull (Sec. 3.2, Fig. 4). C++ twin: algorithms/valid_path.hpp.
 
 // Length [m] of the path from s, read from the local-coordinates map, to s^F on the front face. s is projected onto the
-// viewing ray (unit `ray`, world): rounding to 8 bits moves it off the ray, and on a short path even past s^F, where the
-// path has no length.
-float valid_path_length(vec3 s_world, vec3 sf_world, vec3 ray) { return max(dot(s_world - sf_world, ray), 0.0); }
+// viewing ray: rounding to 8 bits moves it off the ray, and on a short path even past s^F, where the path has no length.
+// `ray`: unit where the points are in the world; for local coordinates, that times the transposed map to the world.
+float valid_path_length(vec3 s, vec3 sf, vec3 ray) { return max(dot(s - sf, ray), 0.0); }
 
 // Eq. 1 and 2 as distance from the eye's side: how far behind s^F the i-th of N points lies. `offset` is its place in its
 // step: 0 at the back, as in the paper.
