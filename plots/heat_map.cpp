@@ -181,12 +181,14 @@ std::string to_svg(const HeatMap& map) {
         // Below 6 px a number is a smear: the colour has to do.
         if (!value || cell_text.size_px < 6) continue;
         cell_text.color = ink_on(ground);
-        const std::string label = mark_label(map, {r, c});
-        const double rise = label.empty() ? 0 : kMarkText.size_px / 2;
+        const std::string mark_words = mark_label(map, {r, c});
+        const double rise = mark_words.empty() ? 0 : kMarkText.size_px / 2;
         painter.text(x + cell_width / 2, y + cell_height / 2 + rise, cell_label(*value), cell_text);
         TextStyle mark = kMarkText;
         mark.color = cell_text.color;
-        if (!label.empty()) painter.text(x + cell_width / 2, y + cell_height / 2 - cell_text.size_px / 2, label, mark);
+        if (!mark_words.empty()) {
+          painter.text(x + cell_width / 2, y + cell_height / 2 - cell_text.size_px / 2, mark_words, mark);
+        }
       }
     }
     for (std::size_t c = 0; c < map.columns.size(); ++c) {
