@@ -8,6 +8,7 @@
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/papers.hpp"
 
 namespace pellucid::sandbox {
@@ -124,12 +125,14 @@ int describe(const std::string& wanted, bool json) {
                                       {"description", loaded.description},
                                       {"stand_in", loaded.stand_in},
                                       {"views", views},
+                                      {"volume", volume_json(loaded)},
                                       {"parameters", parameters_json(loaded.parameters().infos())}}
                              .dump(2));
       return kDone;
     }
     fmt::print("{}: {}\n{}\n", loaded.name, loaded.title, loaded.description);
     if (!loaded.stand_in.empty()) fmt::print("stands in: {}\n", loaded.stand_in);
+    if (loaded.volume) fmt::print("volume: {}\n", volume_text(loaded));
     fmt::print("views:");
     for (const View& v : loaded.views)
       fmt::print(" {}", v.name);

@@ -17,6 +17,7 @@
 #include "gl/context.hpp"
 #include "sandbox/commands/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sandbox/commands/scene_facts.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/provenance.hpp"
 #include "sweeps/reference_methods.hpp"
@@ -63,18 +64,6 @@ ordered_json provenance() {
 
 Attributes attributes(const char* command, const ordered_json& recipe, const ordered_json& origin) {
   return {{"pellucid.command", command}, {"pellucid.recipe", recipe.dump()}, {"pellucid.provenance", origin.dump()}};
-}
-
-/// The scene's volume in numbers; null without one. Where it comes from a file: which of its values are density 0
-/// and 1.
-ordered_json volume_json(const Scene& scene) {
-  if (!scene.volume) return nullptr;
-  const Volume& volume = *scene.volume;
-  const glm::vec3 spacing = volume.voxel_spacing_m();
-  return {{"voxels", {volume.size.x, volume.size.y, volume.size.z}},
-          {"voxel_spacing_m", {spacing.x, spacing.y, spacing.z}},
-          {"extinction_per_m", volume.extinction},
-          {"file_range", {volume.file_range.x, volume.file_range.y}}};
 }
 
 int render(const Options& options) {
