@@ -13,7 +13,8 @@ float fresnel_dielectric(float cosine, float eta) {
 
 // Reflected share of a metal of index n + ik (Szirmay-Kalos et al. 2005, Sec. 3).
 vec3 fresnel_metal(float cosine, vec3 n, vec3 k) {
-  float grazing = pow(1.0 - cosine, 5.0);
+  float g = 1.0 - cosine;  // may round below 0, where pow() has no value
+  float grazing = g * g * g * g * g;
   vec3 k2 = k * k;
   return ((n - 1.0) * (n - 1.0) + k2 + 4.0 * n * grazing) / ((n + 1.0) * (n + 1.0) + k2);
 }
