@@ -64,4 +64,10 @@ Table sampling_hulls_shadows(const TableInfo&, const ChosenRows&);
 TableInfo sampling_hulls_references_info();
 Table sampling_hulls_references(const TableInfo&, const ChosenRows&);
 
+/// Errors of the pictures of Szirmay-Kalos et al. 2005, Figs. 5 to 7: n from 5 to 7.
+TableInfo distance_impostors_figure_info(int n);
+Table distance_impostors_fig5(const TableInfo&, const ChosenRows&);
+Table distance_impostors_fig6(const TableInfo&, const ChosenRows&);
+Table distance_impostors_fig7(const TableInfo&, const ChosenRows&);
+
 }  // namespace pellucid::sweeps

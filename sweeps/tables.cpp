@@ -27,7 +27,10 @@ const std::vector<Entry>& entries() {
                                       {sampling_hulls_figure_info(11), &sampling_hulls_fig11},
                                       {sampling_hulls_equal_info(), &sampling_hulls_equal},
                                       {sampling_hulls_shadows_info(), &sampling_hulls_shadows},
-                                      {sampling_hulls_references_info(), &sampling_hulls_references}};
+                                      {sampling_hulls_references_info(), &sampling_hulls_references},
+                                      {distance_impostors_figure_info(5), &distance_impostors_fig5},
+                                      {distance_impostors_figure_info(6), &distance_impostors_fig6},
+                                      {distance_impostors_figure_info(7), &distance_impostors_fig7}};
   return all;
 }
 

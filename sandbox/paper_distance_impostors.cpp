@@ -1,0 +1,104 @@
+// Szirmay-Kalos et al. 2005 (references.bib: szirmaykalos2005).
+#include "sandbox/paper_list.hpp"
+
+namespace pellucid::sandbox {
+namespace {
+
+constexpr Words kSpecs[] = {"distance_impostors_figures", "distance_impostors_curves"};
+constexpr Words kPreviews[] = {"distance_impostors_figures_preview", "distance_impostors_curves_preview"};
+
+// The reference point stays in the middle of the room and its map is drawn once, as in the paper's test application.
+constexpr Words kClassical[] = {"reference_point=scene", "refresh=once"};
+constexpr Words kBox[] = {"reference_point=scene", "refresh=once", "parallax=box"};
+constexpr Words kNiter0[] = {"reference_point=scene", "refresh=once", "iterations=0"};
+constexpr Words kNiter1[] = {"reference_point=scene", "refresh=once", "iterations=1"};
+constexpr Words kNiter3[] = {"reference_point=scene", "refresh=once", "iterations=3"};
+constexpr Words kNiter8[] = {"reference_point=scene", "refresh=once", "iterations=8"};
+constexpr Words kLinear[] = {"reference_point=scene", "refresh=once", "scheme=linear", "iterations=8"};
+
+constexpr PaperPicture kFig5[] = {
+    {"classical", "classical", "environment_map", kClassical, "The map of the room's middle, read by direction alone."},
+    {"niter_0", "localized", "distance_impostors", kNiter0, "The second guess, without iteration."},
+    {"niter_1", "localized", "distance_impostors", kNiter1, "One iteration, which mends the corners."},
+    {"box", "", "environment_map", kBox,
+     "Not in the paper's figure: Bjorke's box, which is the room itself here and so the best that the map allows."},
+};
+constexpr PaperPicture kFig6[] = {
+    {"classical", "classical", "environment_map", kClassical, "The map of the room's middle, read by direction alone."},
+    {"niter_0", "localized", "distance_impostors", kNiter0, "The second guess, without iteration."},
+    {"niter_3", "localized", "distance_impostors", kNiter3, "Converged, but for what the reference point cannot see."},
+    {"niter_8", "", "distance_impostors", kNiter8, "Not in the paper: more iterations do not find it either."},
+    {"linear", "", "distance_impostors", kLinear,
+     "Not in the paper: a search from the near end takes the first surface on the ray, not another."},
+};
+constexpr Words kSingle[] = {"reference_point=scene", "refresh=once", "bounces=1", "iterations=1"};
+constexpr Words kDouble0[] = {"reference_point=scene", "refresh=once", "bounces=2", "iterations=0"};
+constexpr Words kDouble1[] = {"reference_point=scene", "refresh=once", "bounces=2", "iterations=1"};
+constexpr PaperPicture kFig7[] = {
+    {"classical", "classical", "environment_map", kClassical, "One refraction, read by direction alone."},
+    {"single", "single", "distance_impostors", kSingle, "One refraction, localized."},
+    {"double_niter_0", "double", "distance_impostors", kDouble0, "Both refractions, without iteration."},
+    {"double_niter_1", "double", "distance_impostors", kDouble1, "Both refractions, one iteration."},
+};
+
+constexpr Words kMiddle[] = {"scene.ball_x=0", "scene.ball_z=-2.6"};
+constexpr Words kOffCentre[] = {"scene.ball_x=1.6", "scene.ball_z=-2.6"};
+constexpr Words kCorner[] = {"scene.ball_x=3.2", "scene.ball_z=-2.6"};
+
+constexpr PaperPictures fig5(Words name, Words title, std::span<const Words> settings) {
+  return {.name = name,
+          .title = title,
+          .scene = "mirror_room",
+          .preview_scene = "",
+          .view = "",
+          .settings = settings,
+          .width = 700,
+          .height = 700,
+          .pictures = kFig5,
+          .close_up_of = "niter_0",
+          .close_up_width = 140,
+          .close_up_height = 140};
+}
+
+constexpr PaperPictures kPictures[] = {
+    fig5("fig5_middle", "Fig. 5: a mirror ball before the middle of the back wall", kMiddle),
+    fig5("fig5_off_centre", "Fig. 5: off-centre", kOffCentre),
+    fig5("fig5_corner", "Fig. 5: in a corner", kCorner),
+    {.name = "fig6",
+     .title = "Fig. 6: a box hides a part of the room from the reference point",
+     .scene = "mirror_room_box",
+     .preview_scene = "",
+     .view = "",
+     .settings = {},
+     .width = 700,
+     .height = 700,
+     .pictures = kFig6,
+     .close_up_of = "niter_3",
+     .close_up_width = 140,
+     .close_up_height = 140},
+    {.name = "fig7",
+     .title = "Fig. 7: a refracting ball, n = 1.1",
+     .scene = "glass_room",
+     .preview_scene = "",
+     .view = "",
+     .settings = {},
+     .width = 700,
+     .height = 700,
+     .pictures = kFig7,
+     .close_up_of = "double_niter_0",
+     .close_up_width = 160,
+     .close_up_height = 160},
+};
+
+}  // namespace
+
+Paper distance_impostors_paper() {
+  return {"distance_impostors",
+          "Szirmay-Kalos, Aszódi, Lazányi, Premecz 2005: Approximate ray-tracing on the GPU with distance impostors",
+          "szirmaykalos2005",
+          kSpecs,
+          kPreviews,
+          kPictures};
+}
+
+}  // namespace pellucid::sandbox
