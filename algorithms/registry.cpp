@@ -6,6 +6,8 @@
 
 #include "algorithms/distance_impostors/distance_impostors.hpp"
 #include "algorithms/environment_map/environment_map.hpp"
+#include "algorithms/front_refraction/front_refraction.hpp"
+#include "algorithms/geocube/geocube.hpp"
 #include "algorithms/ray_marching/ray_marching.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
@@ -22,6 +24,12 @@ static const std::array kTechniques{
     TechniqueInfo{"environment_map", "Environment map", "blinn1976", true,
                   "classical environment mapping, or with a box or sphere as proxy geometry", environment_map::table,
                   environment_map::make, true},
+    TechniqueInfo{"front_refraction", "Front refraction", "chan2005", true,
+                  "refraction where the eye's ray enters, and nowhere else", front_refraction::table,
+                  front_refraction::make, true},
+    TechniqueInfo{"geocube", "Geocube", "chan2005", false,
+                  "refraction at both sides and internal reflection by cube maps of distances and cones",
+                  geocube::table, geocube::make, true},
     TechniqueInfo{"sampling_hulls", "Sampling hulls", "imagire2007", false,
                   "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
                   sampling_hulls::table, sampling_hulls::make},

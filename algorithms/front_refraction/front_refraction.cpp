@@ -1,0 +1,74 @@
+// Chan and Wang 2005 (references.bib: chan2005), Fig. 1a: refraction at the front side alone.
+#include "algorithms/front_refraction/front_refraction.hpp"
+
+#include <utility>
+
+#include "algorithms/forward_pass.hpp"
+#include "gl/program.hpp"
+
+namespace pellucid::front_refraction {
+namespace {
+
+class FrontRefraction final : public Technique {
+ public:
+  ParameterRef parameters() override { return bind_parameters(parameters_); }
+  void prepare(const Scene&) override {}
+
+  void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
+              gl::PassTimer& timer) override {
+    gl::Defines defines = forward.environment_defines();
+    if (!program_ || defines != defines_) {
+      program_ = gl::Program(
+          "front refraction",
+          {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/front_refraction/front.frag.glsl"}, defines);
+      defines_ = std::move(defines);
+    }
+    {
+      auto pass = timer.pass("opaque");
+      target.framebuffer.bind();
+      forward.draw_shaded(camera, false);
+    }
+    auto pass = timer.pass("glass");
+    forward.bind_environment(program_);
+    program_.set("eye", camera.view.eye);
+    program_.set("reflection", parameters_.reflection);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    const glm::mat4 world_to_clip = camera.projection() * camera.world_to_view();
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+      const Instance& instance = scene.instances[i];
+      if (!optical(scene, instance)) continue;
+      const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+      program_.set("kind", material.kind == SurfaceKind::dielectric ? 0 : material.kind == SurfaceKind::metal ? 1 : 2);
+      program_.set("ior", material.ior);
+      program_.set("reflectance", material.reflectance);
+      program_.set("metal_n", material.metal_n);
+      program_.set("metal_k", material.metal_k);
+      glFrontFace(glm::determinant(glm::mat3(instance.to_world)) < 0 ? GL_CW : GL_CCW);
+      forward.draw_instance(scene, static_cast<int>(i), world_to_clip, program_);
+    }
+    glFrontFace(GL_CCW);
+    glDisable(GL_CULL_FACE);
+  }
+
+  std::string reload_shaders() override { return program_ ? program_.reload() : std::string(); }
+
+ private:
+  Parameters parameters_;
+  gl::Program program_;
+  gl::Defines defines_;
+};
+
+}  // namespace
+
+const ParameterTable& table() {
+  return parameter_table<Parameters>();
+}
+std::unique_ptr<Technique> make() {
+  return std::make_unique<FrontRefraction>();
+}
+
+}  // namespace pellucid::front_refraction

@@ -1,0 +1,86 @@
+// Refraction at both sides and internal reflection: Chan and Wang 2005, Sec. 2.
+#include "algorithms/geocube/search.glsl"
+#include "algorithms/shaders/common/environment.glsl"
+#include "algorithms/shaders/common/optics.glsl"
+
+in vec3 object_position;
+in vec3 object_normal;
+#ifdef SPLIT
+in float cleared;
+flat in int last_cube;
+#endif
+
+layout(std430, binding = 2) readonly buffer FirstCubes { uint first_cubes[]; };  // by triangle, four to a word
+
+uniform vec3 eye;  // in the object's space, like all but the light
+uniform mat3 object_to_world;
+uniform float object_scale;  // metres for a unit of the object's space
+uniform float ior;
+uniform vec3 absorption;  // 1/m
+uniform int reflections;
+uniform int show;
+uniform float diagonal;
+
+#ifdef REPORT
+layout(location = 0) out vec4 entry;      // point; 1
+layout(location = 1) out vec4 ray;        // refracted direction; steps
+layout(location = 2) out vec4 exit_point; // and the length, negative when the bound stopped the search
+layout(location = 3) out vec4 exit_normal; // and the cube
+#else
+layout(location = 0) out vec4 radiance;
+#endif
+
+vec3 light(vec3 direction) { return environment_radiance(normalize(object_to_world * direction)); }
+
+void main() {
+  vec3 v = normalize(object_position - eye);
+  vec3 n = normalize(object_normal);
+  // Interpolated, a normal may look away at the silhouette: there the ray grazes.
+  float cosine = max(-dot(v, n), 0.0);
+  if (-dot(v, n) < 0.0) n = normalize(n - 1.0001 * dot(v, n) * v);
+  float reflected_share = fresnel_dielectric(cosine, 1.0 / ior);
+  vec3 color = reflected_share * light(reflect(v, n));
+  vec3 h = refract(v, n, 1.0 / ior);
+  vec3 weight = vec3(1.0 - reflected_share);
+
+  uint word = first_cubes[gl_PrimitiveID >> 2];
+  int cube = int(word >> uint(8 * (gl_PrimitiveID & 3)) & 255u);
+  float start = 0.0;
+#ifdef SPLIT
+  cube = last_cube;
+  start = max(cleared, min_step);
+#endif
+  vec3 p = object_position;
+#ifdef REPORT
+  entry = vec4(p, h != vec3(0.0) ? 1.0 : 0.0);
+  Exit first = find_exit(p, n, h, cube, start);
+  ray = vec4(h, float(first.steps));
+  exit_point = vec4(first.point, first.bounded ? -first.path : first.path);
+  exit_normal = vec4(first.normal, float(first.cube));
+#else
+  vec3 shown = vec3(0.0);
+  for (int k = 0; k <= reflections && h != vec3(0.0) && max(weight.x, max(weight.y, weight.z)) > 1e-4; ++k) {
+    Exit found = find_exit(p, n, h, cube, start);
+    weight *= transmitted(absorption, found.path * object_scale);
+    n = found.normal;
+    // A normal that looks against the ray belongs to another part of the surface: the ray grazes it.
+    if (dot(h, n) <= 0.0) n = normalize(n - 1.0001 * dot(h, n) * h);
+    float inner = clamp(dot(h, n), 0.0, 1.0);
+    float kept = fresnel_dielectric(inner, ior);
+    if (k == 0) {
+      if (show == 1) shown = vec3(float(found.steps) / float(iterations));
+      if (show == 2) shown = vec3(found.path / diagonal);
+      if (show == 3) shown = vec3(found.bounded ? 1.0 : 0.0);
+      if (show == 4) shown = vec3(found.cube & 1, found.cube >> 1 & 1, found.cube >> 2 & 1) * 0.75 + 0.25;
+      if (show == 5) shown = kept >= 1.0 ? vec3(1.0, 0.5, 0.0) : vec3(0.2);
+    }
+    if (kept < 1.0) color += (1.0 - kept) * weight * light(refract(h, -n, ior));
+    weight *= kept;
+    h = reflect(h, n);
+    p = found.point;
+    cube = found.cube;
+    start = 0.0;
+  }
+  radiance = vec4(show > 0 ? shown : color, 1.0);
+#endif
+}

@@ -1,0 +1,150 @@
+#include "algorithms/geocube/glass_object.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "algorithms/geocube/cache.hpp"
+#include "algorithms/geocube/placement.hpp"
+#include "gl/error.hpp"
+
+namespace pellucid::geocube {
+namespace {
+
+struct Vertex {
+  glm::vec3 position, normal;
+  float first_cube;
+};
+
+const Material& material_of(const Scene& scene, int instance) {
+  return scene.materials[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(instance)].material)];
+}
+
+glm::mat3 linear_part(const Scene& scene, int instance) {
+  return glm::mat3(scene.instances[static_cast<std::size_t>(instance)].to_world);
+}
+
+// A rotation or reflection times one scale.
+bool even(const glm::mat3& m) {
+  const glm::mat3 square = glm::transpose(m) * m;
+  const float mean = (square[0][0] + square[1][1] + square[2][2]) / 3.0F;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (std::abs(square[i][j] - (i == j ? mean : 0.0F)) > 1e-4F * mean) return false;
+    }
+  }
+  return true;
+}
+
+Mesh transformed(const Mesh& mesh, const glm::mat3& linear) {
+  Mesh result = mesh;
+  const glm::mat3 for_normals = glm::transpose(glm::inverse(linear));
+  for (glm::vec3& p : result.positions)
+    p = linear * p;
+  for (glm::vec3& n : result.normals)
+    n = glm::normalize(for_normals * n);
+  if (glm::determinant(linear) < 0) {
+    for (glm::uvec3& t : result.triangles)
+      std::swap(t.y, t.z);
+  }
+  return result;
+}
+
+CubeOptions options_of(const Parameters& p, float ior) {
+  CubeOptions options;
+  options.resolution = p.resolution;
+  options.layers = p.layers;
+  options.epsilon = static_cast<double>(p.epsilon);
+  options.cone_b = p.cone_b;
+  options.use_a = p.cones == Cones::a || p.cones == Cones::ab || p.cones == Cones::ac || p.cones == Cones::abc;
+  options.use_b = p.cones == Cones::b || p.cones == Cones::ab || p.cones == Cones::bc || p.cones == Cones::abc;
+  options.use_c = p.cones == Cones::c || p.cones == Cones::ac || p.cones == Cones::bc || p.cones == Cones::abc;
+  options.use_d = p.sphere;
+  options.ior = static_cast<double>(ior);
+  return options;
+}
+
+}  // namespace
+
+GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& parameters) : instance_(instance) {
+  const Instance& placed = scene.instances[static_cast<std::size_t>(instance)];
+  const Material& material = material_of(scene, instance);
+  const Mesh* mesh = &scene.meshes[static_cast<std::size_t>(placed.mesh)];
+  dielectric_ = material.kind == SurfaceKind::dielectric;
+  ior_ = material.ior;
+  Mesh changed;
+  const glm::mat3 linear = linear_part(scene, instance);
+  if (!even(linear)) {
+    baked_ = linear;
+    changed = transformed(*mesh, linear);
+    mesh = &changed;
+  }
+  std::vector<float> first(mesh->positions.size(), 0.0F);
+  if (dielectric_) {
+    solid_ = std::make_unique<Solid>(*mesh, parameters.holes);
+    std::vector<glm::dvec3> centers;
+    place(parameters, *mesh, centers);
+    const CubeSet set = cached_cubes(*solid_, *mesh, centers, options_of(parameters, ior_), cache_folder());
+    cubes_ = std::make_unique<CubeTextures>(mesh->name, set);
+    for (std::size_t t = 0; t < std::min(mesh->triangles.size(), set.first_cube.size()); ++t) {
+      for (int c = 0; c < 3; ++c)
+        first[mesh->triangles[t][c]] = static_cast<float>(set.first_cube[t]);
+    }
+  }
+  std::vector<Vertex> vertices(mesh->positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    vertices[i] = {mesh->positions[i], mesh->normals[i], first[i]};
+  vertices_ = gl::Buffer(mesh->name, std::span<const Vertex>(vertices));
+  indices_ = gl::Buffer(mesh->name + " indices", std::span<const glm::uvec3>(mesh->triangles));
+  array_ = gl::VertexArray(
+      mesh->name, vertices_, sizeof(Vertex),
+      {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 1, offsetof(Vertex, first_cube)}},
+      &indices_);
+  index_count_ = static_cast<int>(mesh->triangles.size() * 3);
+}
+
+void GlassObject::place(const Parameters& p, const Mesh& mesh, std::vector<glm::dvec3>& centers) {
+  const auto share = [&](float x, float y, float z) {
+    return solid_->low() + glm::dvec3(x, y, z) * (solid_->high() - solid_->low());
+  };
+  switch (p.placement) {
+    case Placing::automatic: {
+      Placement placement = cached_placement(*solid_, mesh, {.cubes = p.cubes}, cache_folder());
+      centers = std::move(placement.centers);
+      unseen_ = std::move(placement.unseen);
+      break;
+    }
+    case Placing::middle:
+      centers = {0.5 * (solid_->low() + solid_->high())};
+      break;
+    case Placing::hand:
+      centers = {share(p.cube_1_x, p.cube_1_y, p.cube_1_z)};
+      if (p.cubes > 2) throw InputError("geocube: placement = hand places 1 or 2 cubes, not more");
+      if (p.cubes == 2) centers.push_back(share(p.cube_2_x, p.cube_2_y, p.cube_2_z));
+      break;
+  }
+}
+
+bool GlassObject::fits(const Scene& scene) const {
+  const Material& material = material_of(scene, instance_);
+  if ((material.kind == SurfaceKind::dielectric) != dielectric_) return false;
+  if (dielectric_ && material.ior != ior_) return false;
+  const glm::mat3 linear = linear_part(scene, instance_);
+  return baked_ ? *baked_ == linear : even(linear);
+}
+
+glm::mat4 GlassObject::to_world(const Scene& scene) const {
+  const glm::mat4& whole = scene.instances[static_cast<std::size_t>(instance_)].to_world;
+  if (!baked_) return whole;
+  glm::mat4 place(1.0F);
+  place[3] = whole[3];
+  return place;
+}
+
+void GlassObject::draw() const {
+  array_.bind();
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace pellucid::geocube

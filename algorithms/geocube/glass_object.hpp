@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "algorithms/geocube/cube_textures.hpp"
+#include "algorithms/geocube/geocube.hpp"
+#include "algorithms/geocube/solid.hpp"
+#include "algorithms/scene/scene.hpp"
+#include "gl/objects.hpp"
+
+namespace pellucid::geocube {
+
+/// An optical object of the scene with what its drawing needs; a dielectric with its cubes. The object's space is the
+/// mesh's, or where the instance is scaled unevenly, the world's but for the place: a circular cone must stay one.
+class GlassObject {
+ public:
+  /// Throws InputError as Solid and build_cubes() do.
+  GlassObject(const Scene&, int instance, const Parameters&);
+
+  int instance() const { return instance_; }
+  /// True while the instance is a dielectric or none as before, of the same index, scaled as before.
+  bool fits(const Scene&) const;
+  glm::mat4 to_world(const Scene&) const;
+  void draw() const;
+
+  const Solid* solid() const { return solid_.get(); }  ///< null for a mirror or metal
+  const CubeTextures* cubes() const { return cubes_.get(); }
+  const std::vector<double>& unseen() const { return unseen_; }  ///< of automatic placement, after each cube
+
+ private:
+  void place(const Parameters&, const Mesh&, std::vector<glm::dvec3>& centers);
+
+  int instance_ = 0;
+  bool dielectric_ = false;
+  float ior_ = 0;
+  std::optional<glm::mat3> baked_;  // the linear part that the mesh was transformed by
+  std::unique_ptr<Solid> solid_;
+  std::unique_ptr<CubeTextures> cubes_;
+  std::vector<double> unseen_;
+  gl::Buffer vertices_, indices_;
+  gl::VertexArray array_;
+  int index_count_ = 0;
+};
+
+}  // namespace pellucid::geocube

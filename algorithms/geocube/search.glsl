@@ -1,0 +1,126 @@
+// Where a ray leaves the solid: Chan and Wang 2005, Sec. 2.2 and 2.3. C++ twin: search.hpp, which tells what each step is for.
+#include "algorithms/geocube/cube_maps.glsl"
+#include "algorithms/geocube/functions.glsl"
+
+uniform int iterations;
+uniform int refine;
+uniform int switches;
+uniform float min_step;
+uniform float cosine_c;
+
+struct Exit {
+  vec3 point;
+  vec3 normal;
+  float path;
+  int steps;
+  int cube;
+  bool bounded;
+};
+
+float allowed_step(CubeSample s, vec3 v, float l, vec3 h) {
+  float d = s.bounds.x, hv = dot(h, v);
+  vec3 n = normalize(s.normal);
+  float a = d * cone_step(l / d, -hv, -hv, 1.0, s.bounds.y);
+  float b = d * cone_step((d - l) / d, hv, dot(h, n), dot(v, n), s.bounds.z);
+  float allowed = max(a < kFar ? a : 0.0, b < kFar ? b : 0.0);
+  return min(allowed, 2.0 * d);
+}
+
+int next_cube(vec3 p, int current, uint asked) {
+  vec3 across = normalize(p - cube_spheres[current].xyz);
+  int best = -1;
+  float least = kFar;
+  for (int i = 0; i < cube_count; ++i) {
+    if ((asked >> uint(i) & 1u) != 0u) continue;
+    float away = abs(dot(cube_spheres[i].xyz - p, across));
+    if (away >= least) continue;
+    least = away;
+    best = i;
+  }
+  return best;
+}
+
+// How far cone C clears the way, at least the minimum step.
+float first_step(vec3 p, vec3 normal, vec3 h, int cube) {
+  if (-dot(h, normal) < cosine_c - 1e-4) return min_step;
+  return max(min_step, fetch_cube(cube, p - cube_spheres[cube].xyz).bounds.w);
+}
+
+// The march from p + t h; `inside` becomes the last place known to be inside, `found` tells whether t lies beyond the exit.
+void march(vec3 p, vec3 h, int most, inout int cube, inout float t, inout float inside, inout int steps, out bool found,
+           out vec3 v, out CubeSample s) {
+  found = false;
+  v = vec3(0.0);
+  s = CubeSample(vec4(0.0), vec3(0.0));
+  for (; !found && steps < most; ) {
+    ++steps;
+    vec4 sphere = cube_spheres[cube];
+    vec3 w = p + t * h - sphere.xyz;
+    float l = max(length(w), 1e-20);
+    v = w / l;
+    if (l < sphere.w) {
+      inside = t;
+      t += max(sphere.w * sphere_step(l / sphere.w, dot(h, v)), min_step);
+      continue;
+    }
+    s = fetch_cube(cube, v);
+    if (l < s.bounds.x) {
+      inside = t;
+      t += max(allowed_step(s, v, l, h), min_step);
+      continue;
+    }
+    uint asked = 1u << uint(cube);
+    bool seen = false;
+    for (int k = 0; k < switches && !seen; ++k) {
+      int other = next_cube(p + t * h, cube, asked);
+      if (other < 0) break;
+      asked |= 1u << uint(other);
+      vec3 from_other = p + t * h - cube_spheres[other].xyz;
+      if (length(from_other) < fetch_distance(other, from_other)) {
+        cube = other;
+        seen = true;
+      }
+    }
+    if (seen) continue;
+    found = dot(h, s.normal) > 0.0;
+    if (!found) t += min_step;
+  }
+}
+
+// `start`: how far the way is known to be clear.
+Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
+  float t = start > 0.0 ? start : first_step(p, normal, h, cube);
+  Exit result;
+  result.steps = 0;
+  float inside = 0.0;
+  bool found;
+  vec3 v;
+  CubeSample s;
+  march(p, h, iterations, cube, t, inside, result.steps, found, v, s);
+  float outside = found ? t : kFar;
+  result.bounded = !found;
+  if (!found) {
+    v = normalize(p + t * h - cube_spheres[cube].xyz);
+    s = fetch_cube(cube, v);
+  }
+  for (int k = 0; found && k < refine; ++k) {
+    float slope = dot(h, s.normal);
+    vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
+    float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
+    if (!(next >= inside && next <= outside)) next = 0.5 * (inside + min(outside, t));
+    t = next;
+    vec3 w = p + t * h - cube_spheres[cube].xyz;
+    float l = max(length(w), 1e-20);
+    v = w / l;
+    s = fetch_cube(cube, v);
+    if (l < s.bounds.x)
+      inside = t;
+    else
+      outside = t;
+  }
+  result.point = found && refine > 0 ? p + t * h : cube_spheres[cube].xyz + s.bounds.x * v;
+  result.path = t;
+  result.cube = cube;
+  result.normal = normalize(s.normal);
+  return result;
+}
