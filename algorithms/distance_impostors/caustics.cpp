@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -151,42 +153,77 @@ void Caustics::add_receiver(const Scene& scene, int instance, const LightMapChar
   }
   Receiver& receiver = receivers_.emplace_back();
   receiver.instance = instance;
+  receiver.places = chart.places;
   receiver.index_count = static_cast<int>(mesh.triangles.size() * 3);
   receiver.vertices = gl::Buffer("receiver vertices", std::span<const Vertex>(vertices));
   receiver.indices = gl::Buffer("receiver indices", std::span<const glm::uvec3>(mesh.triangles));
   receiver.attributes = gl::Buffer("receiver attributes", sizeof(Attributes), GL_DYNAMIC_DRAW);
-  receiver.array = gl::VertexArray(
-      "receiver", receiver.vertices, sizeof(Vertex),
-      {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, place)}, {2, 3, offsetof(Vertex, color)}},
-      &receiver.indices);
-  const std::size_t normals = offsetof(Attributes, normal_to_world);
-  receiver.array.add_instanced(receiver.attributes, sizeof(Attributes),
-                               {{3, 4, 0},
-                                {4, 4, sizeof(glm::vec4)},
-                                {5, 4, 2 * sizeof(glm::vec4)},
-                                {6, 4, 3 * sizeof(glm::vec4)},
-                                {7, 3, normals},
-                                {8, 3, normals + sizeof(glm::vec3)},
-                                {9, 3, normals + 2 * sizeof(glm::vec3)},
-                                {10, 3, offsetof(Attributes, albedo)},
-                                {11, 3, offsetof(Attributes, emission)}});
+  receiver.unshaded = gl::Buffer("receiver place", sizeof(Attributes), GL_DYNAMIC_DRAW);
+  receiver.densities = gl::Buffer("receiver densities", vertices.size() * sizeof(Vertex), GL_DYNAMIC_DRAW);
+  const auto make_array = [&](const gl::Buffer& buffer, const gl::Buffer& attributes) {
+    gl::VertexArray array(
+        "receiver", buffer, sizeof(Vertex),
+        {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, place)}, {2, 3, offsetof(Vertex, color)}},
+        &receiver.indices);
+    const std::size_t normals = offsetof(Attributes, normal_to_world);
+    array.add_instanced(attributes, sizeof(Attributes),
+                        {{3, 4, 0},
+                         {4, 4, sizeof(glm::vec4)},
+                         {5, 4, 2 * sizeof(glm::vec4)},
+                         {6, 4, 3 * sizeof(glm::vec4)},
+                         {7, 3, normals},
+                         {8, 3, normals + sizeof(glm::vec3)},
+                         {9, 3, normals + 2 * sizeof(glm::vec3)},
+                         {10, 3, offsetof(Attributes, albedo)},
+                         {11, 3, offsetof(Attributes, emission)}});
+    return array;
+  };
+  receiver.array = make_array(receiver.vertices, receiver.attributes);
+  receiver.place_array = make_array(receiver.densities, receiver.unshaded);
 }
 
 void Caustics::place_receivers(const Scene& scene) {
-  for (Receiver& receiver : receivers_) {
+  for (std::size_t r = 0; r < receivers_.size(); ++r) {
+    Receiver& receiver = receivers_[r];
     const Instance& instance = scene.instances[static_cast<std::size_t>(receiver.instance)];
     Attributes attributes;
     attributes.to_world = instance.to_world;
+    attributes.albedo = glm::vec3(1);
+    receiver.unshaded.upload(std::span<const Attributes>(&attributes, 1));
     attributes.albedo = scene.materials[static_cast<std::size_t>(instance.material)].albedo * instance.tint;
     receiver.attributes.upload(std::span<const Attributes>(&attributes, 1));
+    if (const glm::mat3 axes(instance.to_world); axes != receiver.axes) measure_density(scene, receiver, axes);
   }
 }
 
-void Caustics::draw_receivers(int copies) const {
+// About a vertex: the area of its triangles over the area that they take of the light map.
+void Caustics::measure_density(const Scene& scene, Receiver& receiver, const glm::mat3& axes) {
+  const Instance& instance = scene.instances[static_cast<std::size_t>(receiver.instance)];
+  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+  std::vector<double> area(mesh.positions.size(), 0), taken(mesh.positions.size(), 0);
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::vec3 ab = axes * (mesh.positions[t.y] - mesh.positions[t.x]);
+    const glm::vec3 ac = axes * (mesh.positions[t.z] - mesh.positions[t.x]);
+    const glm::vec2 uv = receiver.places[t.y] - receiver.places[t.x], uw = receiver.places[t.z] - receiver.places[t.x];
+    for (int i = 0; i < 3; ++i) {
+      area[t[i]] += static_cast<double>(glm::length(glm::cross(ab, ac)));
+      taken[t[i]] += static_cast<double>(std::abs(uv.x * uw.y - uv.y * uw.x));
+    }
+  }
+  std::vector<Vertex> vertices(mesh.positions.size());
+  const std::vector<std::byte> drawn = receiver.vertices.read();
+  std::memcpy(vertices.data(), drawn.data(), drawn.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    vertices[i].color = glm::vec3(taken[i] > 0 ? static_cast<float>(area[i] / taken[i]) : 0.0F);
+  receiver.densities.upload(std::span<const Vertex>(vertices));
+  receiver.axes = axes;
+}
+
+void Caustics::draw_receivers(gl::VertexArray Receiver::*array, int copies) const {
   constexpr GLuint kInstanceBinding = 1;
   for (const Receiver& receiver : receivers_) {
-    receiver.array.bind();
-    glVertexArrayBindingDivisor(receiver.array.id(), kInstanceBinding, static_cast<GLuint>(copies));
+    (receiver.*array).bind();
+    glVertexArrayBindingDivisor((receiver.*array).id(), kInstanceBinding, static_cast<GLuint>(copies));
     glDrawElementsInstanced(GL_TRIANGLES, receiver.index_count, GL_UNSIGNED_INT, nullptr, copies);
   }
 }
@@ -213,7 +250,7 @@ void Caustics::draw_places(const Scene&, const DynamicObjects::Object& object, s
   places_[index].clear({0, 0, -1, 0});
   place_targets_[index].draw(maps.layers, [&](int face) {
     use_cube_program(place_program_, object.cube->camera(), face);
-    draw_receivers(maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
+    draw_receivers(&Receiver::place_array, maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
   });
   end_over_drawn();
 }
@@ -225,7 +262,7 @@ void Caustics::add_light(const DynamicObjects::Object& object, const MapSettings
   light_maps_.bind(7);
   object.cube->target().draw(maps.layers, [&](int face) {
     use_cube_program(cube_light_program_, object.cube->camera(), face);
-    draw_receivers(maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
+    draw_receivers(&Receiver::array, maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
   });
   end_over_drawn();
 }
@@ -238,7 +275,7 @@ void Caustics::draw(const Scene&, const Camera& camera) {
   light_maps_.bind(7);
   light_program_.use();
   light_program_.set("world_to_clip", camera.projection() * camera.world_to_view());
-  draw_receivers(1);
+  draw_receivers(&Receiver::array, 1);
   end_over_drawn();
 }
 
@@ -305,7 +342,12 @@ void Caustics::trace(const Scene& scene, const ForwardPass& forward, const Dynam
     target.clear_color(0, {0, 0, -1, 0});
     target.clear_color(1, {0, 0, 0, 0});
     glDisable(GL_BLEND);
-    if (exit == 0) forward.draw_geometry(camera.world_to_clip, depth_program_, Objects::all);
+    if (exit == 0) {
+      // Whatever stands between; a shader without outputs leaves undefined colours.
+      glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+      forward.draw_geometry(camera.world_to_clip, depth_program_, Objects::all);
+      glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    }
     glDisable(GL_CULL_FACE);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);

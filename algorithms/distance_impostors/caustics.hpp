@@ -48,7 +48,10 @@ class Caustics {
   struct Receiver {
     int instance = 0;
     gl::Buffer vertices, indices, attributes;
-    gl::VertexArray array;
+    gl::Buffer densities, unshaded;      // area that the unit square stands for, about each vertex
+    gl::VertexArray array, place_array;  // with the colours; with the densities in their stead
+    std::vector<glm::vec2> places;       // by vertex
+    glm::mat3 axes{0.0F};                // of the instance, that the densities are for
     int index_count = 0;
   };
   struct PhotonCamera {
@@ -58,13 +61,14 @@ class Caustics {
   };
   void add_receiver(const Scene&, int instance, const struct LightMapChart&);
   void place_receivers(const Scene&);
+  static void measure_density(const Scene&, Receiver&, const glm::mat3& axes);
   void draw_places(const Scene&, const DynamicObjects::Object&, std::size_t index, const MapSettings&);
   void add_light(const DynamicObjects::Object&, const MapSettings&);
   bool see(const Scene&, const Light&, const DynamicObjects::Object&, PhotonCamera&);
   void trace(const Scene&, const ForwardPass&, const DynamicObjects&, std::size_t index, const Light&,
              const LookupSettings&);
   void splat(int exits);
-  void draw_receivers(int copies) const;
+  void draw_receivers(gl::VertexArray Receiver::*array, int copies) const;
   const gl::Program& photon_program(const DynamicObjects&, SurfaceKind, const LookupSettings&);
   void warn(std::string text);
 
