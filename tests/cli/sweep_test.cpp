@@ -1,10 +1,7 @@
 // pellucid sweep run, sweep status, results, table, plot: one small sweep from its spec to its curves.
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -143,34 +140,6 @@ TEST_F(Sweep, StatusCountsWhatIsDone) {
   const Outcome plain = pellucid({"sweep", "status", store});
   ASSERT_TRUE(succeeded(plain));
   EXPECT_NE(plain.out.find("small"), std::string::npos);
-}
-
-TEST_F(Sweep, AKilledSweepResumesAndKeepsWhatItHad) {
-  spec = write_file(folder / "small.toml", small_spec(scene, "{ from = 1, to = 12, steps = 12 }", 400)).string();
-  {
-    Background running({PELLUCID_PROGRAM, "sweep", "run", spec, "--store", store});
-    // Until a row is there, or it is over.
-    std::size_t kept = 0;
-    while (kept == 0 && running.running()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      const Outcome outcome = pellucid({"results", store, "--format", "json"});
-      if (outcome.status == 0) kept = json::parse(outcome.out).size();
-    }
-    running.stop(SIGKILL);
-  }
-  const json before = rows();
-  ASSERT_GT(before.size(), 0U);
-  ASSERT_LT(before.size(), 13U) << "it was over before it could be killed";
-  ASSERT_TRUE(succeeded(sweep()));
-  const json after = rows();
-  EXPECT_EQ(after.size(), 13U);
-  for (const json& row : before) {
-    const auto same = std::find_if(after.begin(), after.end(),
-                                   [&](const json& other) { return other.at("point") == row.at("point"); });
-    ASSERT_NE(same, after.end());
-    EXPECT_EQ(same->at("frame_ms_median"), row.at("frame_ms_median"));
-    EXPECT_EQ(same->at("started_utc"), row.at("started_utc"));
-  }
 }
 
 TEST_F(Sweep, ResultsComeAsCsvToo) {

@@ -3,14 +3,12 @@
 #include <chrono>
 #include <fstream>
 #include <map>
-#include <random>
 #include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "gl/error.hpp"
@@ -221,84 +219,6 @@ TEST_F(Sweep, StopsAtAnInterruptAndGoesOnLater) {
   EXPECT_EQ(second.reused, first.measured);
   EXPECT_EQ(second.left, 0U);
   EXPECT_LE(requests().size(), 41U);
-}
-
-/// Starts this program in a role and returns its process.
-pid_t start(const std::vector<std::string>& command) {
-  const pid_t pid = ::fork();
-  if (pid != 0) return pid;
-  std::vector<char*> argv;
-  for (const std::string& word : command)
-    argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  ::execv(argv[0], argv.data());
-  ::_exit(127);
-}
-
-TEST_F(Sweep, SurvivesBeingKilledAtAnyMoment) {
-  constexpr std::size_t kPoints = 60;
-  std::mt19937 random(2007);
-  std::size_t kills = 0;
-  std::size_t stored_before = 0;
-  for (;;) {
-    const pid_t pid = start(self({"fake-sweep", store.string(), log.string(), std::to_string(kPoints), "4", "50"}));
-    std::this_thread::sleep_for(
-        std::chrono::milliseconds(10 + random() % (120 + 10 * kills)));  // a slow machine gets on too
-    ::kill(pid, SIGKILL);
-    int status = 0;
-    ASSERT_EQ(::waitpid(pid, &status, 0), pid);
-    const bool finished = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    ASSERT_TRUE(finished || WIFSIGNALED(status)) << "status " << status;
-    kills += finished ? 0 : 1;
-    if (std::filesystem::exists(store)) {
-      // A kill within the very first moments may leave a store without a plan or even without a schema.
-      std::size_t stored = stored_before;
-      try {
-        stored = Store(store, Access::read).points().size();
-      } catch (const InputError& e) {
-        EXPECT_EQ(stored_before, 0U) << e.what();
-      }
-      EXPECT_GE(stored, stored_before);                                   // nothing is lost
-      EXPECT_LE(requests().size(), stored + kills + (finished ? 0 : 1));  // and at most the point in work is done again
-      stored_before = stored;
-    }
-    if (finished) break;
-    ASSERT_LT(kills, 500U);
-  }
-  EXPECT_GE(kills, 3U);
-  const std::vector<json> rows = read_rows(store, true);
-  ASSERT_EQ(rows.size(), kPoints);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    EXPECT_EQ(rows[i].at("n"), i + 1);
-    EXPECT_EQ(rows[i].at("status"), "ok");
-    EXPECT_EQ(rows[i].at("frame_ms_samples").size(), 50U);
-  }
-}
-
-TEST_F(Sweep, AFullDiskKeepsTheRowsThatAreThere) {
-  const std::string errors = (folder / "errors").string();
-  const pid_t pid = ::fork();
-  if (pid == 0) {
-    if (::freopen(errors.c_str(), "w", stderr) == nullptr) ::_exit(126);
-    ::_exit(test::run_role({"full-disk-sweep", store.string(), log.string(), "40", "0", "5000"}));
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(pid, &status, 0), pid);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 1);
-  std::ifstream file(errors);
-  std::string message;
-  std::getline(file, message);
-  EXPECT_NE(message.find("cannot be written: "), std::string::npos) << message;
-  EXPECT_NE(message.find("Rows stored so far stay"), std::string::npos) << message;
-  const std::size_t kept = read_rows(store).size();
-  EXPECT_GE(kept, 3U);
-  EXPECT_LT(kept, 40U);
-  // With room again the sweep goes on.
-  const pid_t again = start(self({"fake-sweep", store.string(), log.string(), "40", "0", "5000"}));
-  ASSERT_EQ(::waitpid(again, &status, 0), again);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  EXPECT_EQ(read_rows(store).size(), 40U);
 }
 
 TEST(WorkerProcess, DiesWithItsOwner) {
