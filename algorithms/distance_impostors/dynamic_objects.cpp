@@ -19,16 +19,6 @@ const Material& material_of(const Scene& scene, const DynamicObjects::Object& ob
   return scene.materials[static_cast<std::size_t>(instance_of(scene, object).material)];
 }
 
-Bounds mesh_bounds(const Mesh& mesh) {
-  Bounds bounds;
-  if (!mesh.positions.empty()) bounds.min = bounds.max = mesh.positions.front();
-  for (const glm::vec3& p : mesh.positions) {
-    bounds.min = glm::min(bounds.min, p);
-    bounds.max = glm::max(bounds.max, p);
-  }
-  return bounds;
-}
-
 // Around the opaque objects: what the proxies stand for.
 Bounds opaque_bounds(const Scene& scene) {
   Bounds all;
@@ -37,9 +27,7 @@ Bounds opaque_bounds(const Scene& scene) {
     if (optical(scene, instance)) continue;
     const Bounds bounds = mesh_bounds(scene.meshes[static_cast<std::size_t>(instance.mesh)]);
     for (int i = 0; i < 8; ++i) {
-      const glm::vec4 corner((i & 1) != 0 ? bounds.max.x : bounds.min.x, (i & 2) != 0 ? bounds.max.y : bounds.min.y,
-                             (i & 4) != 0 ? bounds.max.z : bounds.min.z, 1.0F);
-      const glm::vec3 p(instance.to_world * corner);
+      const glm::vec3 p(instance.to_world * glm::vec4(bounds.corner(i), 1.0F));
       all.min = any ? glm::min(all.min, p) : p;
       all.max = any ? glm::max(all.max, p) : p;
       any = true;

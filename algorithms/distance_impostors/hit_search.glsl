@@ -25,7 +25,7 @@ vec3 find_hit(vec3 x, vec3 R, IMPOSTOR_MAP map) {
   if (sine < 1e-4 && cosine > 0.0) return R * max(IMPOSTOR_DISTANCE(map, R), r);
   if (sine < 1e-4) across = cross(from, abs(from.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
   across = normalize(across);
-  float theta = min(acos(cosine), 3.1405927);
+  float theta = min(atan(sine, cosine), 3.1405927);
   float height = r * sin(theta);
   float low = 0.0, high = theta;
   bool under = false, found = false;

@@ -42,7 +42,7 @@ glm::vec<3, Real> find_linear(const glm::vec<3, Real>& x, const glm::vec<3, Real
   // Straight through o no direction lies between: take a plane beside it.
   if (sine < Real(1e-4)) across = glm::cross(from, std::abs(from.x) < Real(0.7) ? Vec(1, 0, 0) : Vec(0, 1, 0));
   across = glm::normalize(across);
-  const Real theta = std::min(std::acos(cosine), Real(3.1405927));
+  const Real theta = std::min(std::atan2(sine, cosine), Real(3.1405927));
   const Real height = r * std::sin(theta);
   const auto direction = [&](Real phi) { return std::cos(phi) * from + std::sin(phi) * across; };
   const auto over = [&](Real phi) { return height >= distance(direction(phi)) * std::sin(theta - phi); };

@@ -2,10 +2,9 @@
 // reflected on the outside, i what leaves after i reflections inside.
 #include "algorithms/distance_impostors/lookup.glsl"
 #include "algorithms/distance_impostors/surface_point.glsl"
+#include "algorithms/shaders/common/optics.glsl"
 #if KIND == 3
 #include "algorithms/distance_impostors/refraction.glsl"
-#else
-#include "algorithms/shaders/common/optics.glsl"
 #endif
 
 #if KIND != 3

@@ -1,10 +1,9 @@
 // A mirror, metal or dielectric in localized light (Sec. 3 and 4).
 #include "algorithms/distance_impostors/lookup.glsl"
 #include "algorithms/distance_impostors/surface_point.glsl"
+#include "algorithms/shaders/common/optics.glsl"
 #if KIND == 3
 #include "algorithms/distance_impostors/refraction.glsl"
-#else
-#include "algorithms/shaders/common/optics.glsl"
 #endif
 
 #if KIND != 3
