@@ -17,11 +17,10 @@ constexpr std::size_t kKeptViews = 1 + 6 * kMaxLights;
 
 // Nothing of the box can be seen when all its corners lie beyond one plane of the clip volume. The far plane is left
 // out, since the background lies on it.
-bool outside(const glm::mat4& to_clip, const glm::vec3& min, const glm::vec3& max) {
+bool outside(const glm::mat4& to_clip, const Bounds& bounds) {
   std::array<int, 5> beyond{};
   for (int i = 0; i < 8; ++i) {
-    const glm::vec4 p = to_clip * glm::vec4((i & 1) != 0 ? max.x : min.x, (i & 2) != 0 ? max.y : min.y,
-                                            (i & 4) != 0 ? max.z : min.z, 1.0F);
+    const glm::vec4 p = to_clip * glm::vec4(bounds.corner(i), 1.0F);
     beyond[0] += p.x < -p.w ? 1 : 0;
     beyond[1] += p.x > p.w ? 1 : 0;
     beyond[2] += p.y < -p.w ? 1 : 0;
@@ -65,12 +64,9 @@ void ForwardPass::upload_meshes(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     std::vector<Vertex> vertices(mesh.positions.size());
     Vertices out;
-    if (!vertices.empty()) out.min = out.max = mesh.positions.front();
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t i = 0; i < vertices.size(); ++i)
       vertices[i] = {mesh.positions[i], mesh.normals[i], mesh.colors.empty() ? glm::vec3(1.0F) : mesh.colors[i]};
-      out.min = glm::min(out.min, mesh.positions[i]);
-      out.max = glm::max(out.max, mesh.positions[i]);
-    }
+    out.bounds = mesh_bounds(mesh);
     out.vertices = gl::Buffer(mesh.name + " vertices", std::span<const Vertex>(vertices));
     out.indices = gl::Buffer(mesh.name + " indices", std::span<const glm::uvec3>(mesh.triangles));
     out.index_count = static_cast<int>(mesh.triangles.size() * 3);
@@ -138,7 +134,7 @@ const ForwardPass::Visible& ForwardPass::visible(const glm::mat4& world_to_clip,
     for (const auto* group : {&lambertian_, &optical_}) {
       if (objects == (group == &lambertian_ ? Objects::optical : Objects::lambertian)) continue;
       for (const InstanceAttributes& instance : (*group)[m]) {
-        if (!outside(world_to_clip * instance.to_world, meshes_[m].min, meshes_[m].max)) seen.push_back(instance);
+        if (!outside(world_to_clip * instance.to_world, meshes_[m].bounds)) seen.push_back(instance);
       }
     }
     if (!seen.empty()) out.batches[m] = make_batch(m, seen);
@@ -154,9 +150,11 @@ void ForwardPass::upload_lights(const Scene& scene) {
   auto cosine = [](float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); };
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    block.lights[i] = {glm::vec4(light.position, static_cast<float>(light.kind)),
-                       glm::vec4(light.direction, cosine(light.outer_angle_deg)),
-                       glm::vec4(light.intensity, cosine(light.inner_angle_deg))};
+    // The cosines of a narrow cone may round to one number, and from that to itself there is no smoothstep.
+    const float outer = cosine(light.outer_angle_deg);
+    const float inner = std::max(cosine(light.inner_angle_deg), std::nextafter(outer, 2.0F));
+    block.lights[i] = {glm::vec4(light.position, static_cast<float>(light.kind)), glm::vec4(light.direction, outer),
+                       glm::vec4(light.intensity, inner)};
     uniform_lighting_ = uniform_lighting_ && light.kind == LightKind::directional;
     shadowed_ = shadowed_ || light.casts_shadow;
     uniform_incident_ += light.intensity / (4.0F * std::numbers::pi_v<float>);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/scene/bounds.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/shadow_maps.hpp"
 #include "gl/objects.hpp"
@@ -72,7 +73,7 @@ class ForwardPass {
   struct Vertices {
     gl::Buffer vertices, indices;
     int index_count = 0;
-    glm::vec3 min{0.0F}, max{0.0F};  // bounds of the mesh
+    Bounds bounds;  // of the mesh
   };
   struct InstanceAttributes {
     glm::mat4 to_world;

@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,12 +28,8 @@ std::vector<Vertex> with_normal_depth(const Mesh& mesh) {
   solid.instances.push_back({.name = mesh.name});
   const Geometry geometry(solid);
   // The ray sets out from the surface it must not find again.
-  glm::vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
-  for (const glm::vec3& p : mesh.positions) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  const double clearance = 1e-5 * static_cast<double>(glm::length(high - low));
+  const Bounds bounds = mesh_bounds(mesh);
+  const double clearance = 1e-5 * static_cast<double>(glm::length(bounds.max - bounds.min));
   std::vector<Vertex> vertices(mesh.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Hit hit = geometry.intersect(glm::dvec3(mesh.positions[i]), -glm::dvec3(mesh.normals[i]), clearance,
