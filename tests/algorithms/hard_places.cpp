@@ -183,6 +183,22 @@ TEST_P(HardPlaces, LightOnASamplingPoint) {
   }
 }
 
+// So narrow a spot that its two cosines are one float: along its axis there is light, beside it none.
+TEST_P(HardPlaces, SpotOfAHairsBreadth) {
+  Scene scene = aligned_fog();
+  Light spot = lamp({0.0F, 0.0F, 2.0F}, 1.0F, LightKind::spot);
+  spot.direction = {0.0F, 0.0F, -1.0F};
+  spot.inner_angle_deg = 0.001F;
+  spot.outer_angle_deg = 0.002F;
+  scene.lights.push_back(spot);
+  Settings s = settings(c, c.fine);
+  s.width = 45;  // odd numbers: the middle pixel's ray is the spot's axis
+  const Image image = frame(std::move(scene), s);
+  EXPECT_EQ(not_finite(image), 0);
+  EXPECT_GT(image.at(22, 22)[0], 1e-3F);
+  EXPECT_EQ(image.at(12, 22)[0], 0.0F);
+}
+
 // A lamp at the eye, on the box's face, at its corner and inside an opaque object.
 TEST_P(HardPlaces, LightsWhereSomethingElseIs) {
   for (const glm::vec3& place :
