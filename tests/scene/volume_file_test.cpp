@@ -278,6 +278,42 @@ TEST_F(VolumeFiles, ValuesThatAreNotFiniteAreFound) {
   values[3] = -std::numeric_limits<float>::infinity();
   EXPECT_EQ(error_of("a.mha", kMeta + "ElementDataFile = LOCAL\n" + raw(values)),
             "the value at voxel (3, 0, 0) is -inf");
+  write("voxels.raw", raw(values));
+  EXPECT_EQ(error_of("a.mhd", kMeta + "ElementDataFile = voxels.raw\n"), "the value at voxel (3, 0, 0) is -inf");
+  EXPECT_EQ(
+      error_of("a.inr", inr("XDIM=4\nYDIM=3\nZDIM=2\nVDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\n") + raw(values)),
+      "the value at voxel (3, 0, 0) is -inf");
+  EXPECT_EQ(error_of("a.vti", vti("0 1 2 3 4 5 6 7 8 9 10 11 12 nan 14 15 16 17 18 19 20 21 22 23")),
+            "the value at voxel (1, 0, 1) is nan");
+  // A double that no float holds.
+  EXPECT_EQ(error_of("a.nrrd", "NRRD0004\ntype: double\ndimension: 3\nsizes: 1 1 1\nencoding: raw\nendian: little\n\n" +
+                                   std::string("\0\0\0\0\0\0\xf0\x7e", 8)),
+            "the value at voxel (0, 0, 0) is inf");
+}
+
+// In every format, before anything is allocated: were it not, the test would not have the memory.
+TEST_F(VolumeFiles, MoreVoxelsThanAreReadAreRefusedInEveryFormat) {
+  const auto errors = [&](int x, int y, int z) {
+    const std::string n[3] = {std::to_string(x), std::to_string(y), std::to_string(z)};
+    const std::string sizes = n[0] + " " + n[1] + " " + n[2];
+    std::string meta = kMeta + "ElementDataFile = LOCAL\n" + raw();
+    meta.replace(meta.find("4 3 2"), 5, sizes);
+    std::string nrrd = kNrrd + "encoding: raw\n\n" + raw();
+    nrrd.replace(nrrd.find("4 3 2"), 5, sizes);
+    const std::string extent =
+        "0 " + std::to_string(x - 1) + " 0 " + std::to_string(y - 1) + " 0 " + std::to_string(z - 1);
+    return std::vector<std::string>{error_of("a.mha", meta), error_of("a.nrrd", nrrd),
+                                    error_of("a.vti", vti("1", extent)),
+                                    error_of("a.inr", inr("XDIM=" + n[0] + "\nYDIM=" + n[1] + "\nZDIM=" + n[2] +
+                                                          "\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\n") +
+                                                          raw())};
+  };
+  for (const std::string& error : errors(1, 2049, 1))
+    EXPECT_EQ(error, "1 x 2049 x 1 voxels; at most 2048 along an axis are read");
+  for (const std::string& error : errors(2048, 2048, 257))
+    EXPECT_EQ(error, "2048 x 2048 x 257 voxels; at most 2^30 are read");
+  for (const std::string& error : errors(2147483647, 2147483647, 2147483647))
+    EXPECT_EQ(error, "2147483647 x 2147483647 x 2147483647 voxels; at most 2048 along an axis are read");
 }
 
 TEST_F(VolumeFiles, OtherNamesAndMissingFiles) {
