@@ -76,7 +76,7 @@ struct Photons {
   Power landed;                    ///< reaches Lambertian surfaces
   Power escaped;                   ///< leaves the scene
   double limited_share = 0;        ///< of what was sent: cut by `reflections` and `depth`, in the worst channel
-  double lost_share = 0;           ///< left a dielectric without meeting its surface, escaped or not: it is open
+  double lost_share = 0;           ///< left a dielectric unmet or not entered: it is open, or inside out
   std::vector<Deposit> deposits;   ///< if they were asked for, in a fixed order
   std::uint64_t photons = 0, rays = 0;
   double seconds = 0;

@@ -31,6 +31,11 @@ void Solids::leave(int instance) {
   --count_;
 }
 
+bool Solids::contains(int instance) const {
+  const auto end = of_.begin() + static_cast<std::ptrdiff_t>(count_);
+  return std::find(of_.begin(), end, instance) != end;
+}
+
 glm::dvec3 RayTree::absorbed(const Branch& branch, double path_m) const {
   const Instance& solid = scene_->instances[static_cast<std::size_t>(branch.inside.innermost())];
   const glm::dvec3 absorption(scene_->materials[static_cast<std::size_t>(solid.material)].absorption);
@@ -80,6 +85,8 @@ void RayTree::branch(const Branch& parent, const Hit& hit, const SurfacePoint& p
     return;
   }
 
+  // Shells of one mesh may overlap, so that it is entered twice; it is not left before.
+  if (!point.front && !parent.inside.contains(hit.index)) tally.lost_weight += worst(parent.weight);
   if (!limits.both_sides && !point.front) {  // the far side is not there
     child.face = -point.face;
     child.inside.leave(hit.index);

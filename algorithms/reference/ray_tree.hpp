@@ -25,6 +25,7 @@ class Solids {
   int innermost() const { return of_[count_ - 1]; }
   void enter(int instance);  ///< RuntimeError when they nest deeper than can be held
   void leave(int instance);  ///< no matter if it was not entered: the mesh is open then
+  bool contains(int instance) const;
 
  private:
   std::array<int, 8> of_{};
@@ -46,7 +47,7 @@ struct TreeLimits {
 struct TreeTally {
   double cut_weight = 0.0;      ///< of branches below `cut` or beyond `depth`
   double limited_weight = 0.0;  ///< of those that `reflections`, `entry_reflection` leave out by definition
-  double lost_weight = 0.0;     ///< of rays that left a solid without meeting its surface: the mesh is open
+  double lost_weight = 0.0;     ///< of rays that left a solid unmet, or that they had not entered: the mesh is open
   std::uint64_t rays = 0;
 
   void add(const TreeTally& other) {

@@ -52,8 +52,8 @@ struct SurfaceStatistics {
   double standard_error_mean = 0;  ///< one sample, which is the truth at the pixel's centre
   double cut_weight_max = 0;       ///< of branches left out by `cut` and `depth`: of a pixel, and the mean of all
   double cut_weight_mean = 0;
-  double limited_weight_mean = 0;         ///< of light that `reflections`, `entry_reflection` leave out by definition
-  double lost_weight_mean = 0;            ///< of rays that left a dielectric without meeting its surface: it is open
+  double limited_weight_mean = 0;  ///< of light that `reflections`, `entry_reflection` leave out by definition
+  double lost_weight_mean = 0;     ///< of rays that left a dielectric unmet or not entered: it is open, or inside out
   double caustic_standard_error_max = 0;  ///< by the number of photons
   double caustic_standard_error_mean = 0;
   std::uint64_t rays = 0;  ///< shadow rays included

@@ -195,10 +195,10 @@ int reference(const Options& options) {
   sweeps::ReferenceSettings settings = reference_settings(options);
   const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
   const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
-  Scene scene = load_scene(options.scene);
-  settings = sweeps::settled(settings, scene.name, has_interfaces(scene), scene.volume.has_value());
-  const std::map<std::string, Value> parameters = reference_parameters(options, scene, draws);
-  const Camera camera{scene.find_view(options.view), size.width, size.height};
+  Scene loaded = load_scene(options.scene);
+  settings = sweeps::settled(settings, loaded.name, has_interfaces(loaded), loaded.volume.has_value());
+  const std::map<std::string, Value> parameters = reference_parameters(options, loaded, draws);
+  const Camera camera{loaded.find_view(options.view), size.width, size.height};
   ReferenceOptions tracing;
   tracing.tolerance = options.tolerance;
   tracing.max_steps = options.max_steps;
@@ -208,26 +208,29 @@ int reference(const Options& options) {
   }
 
   ordered_json origin = provenance();
-  origin["scene_hash"] = scene.content_hash();
+  origin["scene_hash"] = loaded.content_hash();
   SurfaceLayer surfaces;
   Image slices;
+  // What draws takes the scene, with its parameters as they are; the rest uses it there.
+  std::optional<gl::Context> context;
+  std::optional<RenderSession> session;
   if (draws || settings.surfaces == sweeps::ReferenceSurfaces::raster) {
-    const gl::Context context({.device = options.device});
-    RenderSession session(sweeps::load_again(options.scene, parameters), techniques().front().name, camera.view.name,
-                          size.width, size.height);
+    context.emplace(gl::ContextOptions{.device = options.device});
+    session.emplace(std::move(loaded), techniques().front().name, camera.view.name, size.width, size.height);
     for (const auto& [name, value] : parameters) {
-      if (name.starts_with("shadow.")) session.assign(name, value);
+      if (name.starts_with("shadow.")) session->assign(name, value);
     }
-    surfaces = sweeps::reference_surfaces(session, settings);
+    surfaces = sweeps::reference_surfaces(*session, settings);
     if (of_slices)
       slices = sweeps::draw_slices(options.scene, parameters, camera.view.name, size.width, size.height, settings);
-    origin["device"] = context.device().renderer;
-    origin["driver"] = context.device().version;
+    origin["device"] = context->device().renderer;
+    origin["driver"] = context->device().version;
   } else {
     SurfaceOptions rays = options.tracing;
     rays.progress = tracing.progress;
-    surfaces = trace_surfaces(scene, camera, rays);
+    surfaces = trace_surfaces(loaded, camera, rays);
   }
+  Scene& scene = session ? session->scene() : loaded;
   const Reference exact = render_reference(scene, camera, surfaces, tracing);
 
   ordered_json errors{{"step_error_max", exact.step_error_max},
@@ -296,10 +299,10 @@ int reference(const Options& options) {
         options.output.string(), s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
         s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
     if (s.lost_weight_mean > 0) {
-      fmt::print(
-          stderr,
-          "warning: rays leave a dielectric without meeting its surface ({:.2g} of the light): its mesh is open\n",
-          s.lost_weight_mean);
+      fmt::print(stderr,
+                 "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its "
+                 "mesh is open or inside out\n",
+                 s.lost_weight_mean);
     }
   }
   if (of_slices) {

@@ -210,9 +210,14 @@ TEST(ReferenceOptics, AnOpenSolidIsNoticed) {
   Scene scene;
   set_furnace(scene);
   Mesh open = make_sphere(1.0F, 32);
+  const std::vector<glm::uvec3> all = open.triangles;
   open.triangles.resize(open.triangles.size() / 2);
   add(scene, open, glass(1.5F));
   EXPECT_GT(trace_surfaces(scene, looking({0, 2, 3}, {0, 0, 0}, 32)).statistics.lost_weight_mean, 3e-3);
+  scene.meshes[0].triangles = all;
+  for (glm::uvec3& triangle : scene.meshes[0].triangles)
+    std::swap(triangle.y, triangle.z);
+  EXPECT_GT(trace_surfaces(scene, looking({0, 2, 3}, {0, 0, 0}, 32)).statistics.lost_weight_mean, 0.05) << "inside out";
 }
 
 // The same picture at all scales, near the origin and away from it: rays do not meet what they leave.
