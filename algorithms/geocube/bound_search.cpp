@@ -198,20 +198,24 @@ double cone_b_inscribed(const ConeB& cone, const SheetTree& tree, std::size_t& h
 }
 
 double cone_b_enclosing(const ConeB& cone, const Sheet& sheet, const CubeGrid& grid) {
-  constexpr int kAround = 64;
+  constexpr int kAround = 32;
   const glm::dvec3 side =
       glm::normalize(glm::cross(cone.axis, std::abs(cone.axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 up = glm::cross(cone.axis, side);
-  const double step = 0.5 * grid.texel_angle();
+  const double step = 0.75 * grid.texel_angle(), cos_step = std::cos(step), sin_step = std::sin(step);
   double least = 1;
   for (int k = 0; k < kAround; ++k) {
     const double turn = 2 * std::numbers::pi * k / kAround;
     const glm::dvec3 across = std::cos(turn) * side + std::sin(turn) * up;
-    for (double angle = step; angle < std::numbers::pi / 2; angle += step) {
-      const glm::dvec3 direction = std::cos(angle) * cone.axis + std::sin(angle) * across;
+    double cosine = cos_step, sine = sin_step;
+    while (cosine > 0) {
+      const glm::dvec3 direction = cosine * cone.axis + sine * across;
       const std::size_t texel = grid.index(grid.nearest(direction));
       if (sheet.present[texel] == 0 || cone.breaks(sheet.points[texel])) break;
-      least = std::min(least, glm::dot(grid.direction(texel), cone.axis));
+      least = std::min(least, cosine);
+      const double next = cosine * cos_step - sine * sin_step;
+      sine = sine * cos_step + cosine * sin_step;
+      cosine = next;
     }
   }
   return std::max(least, 0.0);

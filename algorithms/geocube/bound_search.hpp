@@ -81,7 +81,7 @@ struct ConeB {
 /// the cosine of the nearest that does, −1 when there is none.
 double cone_b_inscribed(const ConeB&, const SheetTree& tree, std::size_t& hint);
 /// cos θ_B of the narrowest cone that holds the points which reach S along the cube map without leaving the planes: the
-/// mesh "near S" of the paper, followed in 64 directions around S.
+/// mesh "near S" of the paper, followed in 32 directions around S.
 double cone_b_enclosing(const ConeB&, const Sheet& sheet, const CubeGrid& grid);
 
 }  // namespace pellucid::geocube

@@ -16,6 +16,8 @@
 namespace pellucid::geocube {
 namespace {
 
+const std::string kFullscreen = "algorithms/shaders/common/fullscreen.vert.glsl";
+
 class Geocube final : public Technique {
  public:
   ParameterRef parameters() override { return bind_parameters(parameters_); }
@@ -27,6 +29,7 @@ class Geocube final : public Technique {
       if (optical(scene, scene.instances[i])) objects_.emplace_back(scene, static_cast<int>(i), parameters_);
     }
     function_table_ = make_function_table(parameters_.table_size);
+    fullscreen_ = gl::VertexArray("geocube fullscreen");
   }
 
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
@@ -40,13 +43,20 @@ class Geocube final : public Technique {
     }
     forward.bind_environment(glass_);
     forward.bind_environment(reflect_);
+    {
+      auto pass = timer.pass("mirrors");
+      draw_mirrors(scene, camera);
+    }
+    fit(target.color.width(), target.color.height());
+    {
+      auto pass = timer.pass("entries");
+      const gl::Framebuffer entries = entry_framebuffer(target.depth);
+      draw_entries(scene, camera, entries);
+    }
     auto pass = timer.pass("glass");
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LEQUAL);
-    glDepthMask(GL_TRUE);
-    for (const GlassObject& object : objects_)
-      draw(object, scene, camera, object.cubes() != nullptr ? glass_ : reflect_);
-    frame_ = Frame{&scene, &forward, camera};
+    target.framebuffer.bind();
+    draw_glass(scene, camera, glass_, nullptr);
+    frame_ = Frame{&scene, camera};
   }
 
   void native_errors(nlohmann::json& out) const override {
@@ -73,7 +83,7 @@ class Geocube final : public Technique {
 
   std::string reload_shaders() override {
     std::string words;
-    for (gl::Program* program : {&glass_, &reflect_}) {
+    for (gl::Program* program : {&entry_, &glass_, &reflect_}) {
       if (*program) words += program->reload();
     }
     return words;
@@ -82,7 +92,6 @@ class Geocube final : public Technique {
  private:
   struct Frame {
     const Scene* scene;
-    const ForwardPass* forward;
     Camera camera;
   };
 
@@ -106,80 +115,153 @@ class Geocube final : public Technique {
     defines.insert(defines.end(), environment.begin(), environment.end());
     if (glass_ && defines == defines_) return;
     const std::string folder = "algorithms/geocube/";
-    glass_ = gl::Program("geocube", {folder + "object.vert.glsl", folder + "glass.frag.glsl"}, defines);
+    entry_ = gl::Program("geocube entries", {folder + "object.vert.glsl", folder + "entry.frag.glsl"}, defines);
+    glass_ = gl::Program("geocube", {kFullscreen, folder + "glass.frag.glsl"}, defines);
     reflect_ = gl::Program("geocube mirrors", {folder + "object.vert.glsl", folder + "reflect.frag.glsl"}, environment);
     defines_ = std::move(defines);
   }
 
-  void draw(const GlassObject& object, const Scene& scene, const Camera& camera, const gl::Program& program) const {
-    const Material& material =
-        scene
-            .materials[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(object.instance())].material)];
+  static const Material& material_of(const GlassObject& object, const Scene& scene) {
+    return scene
+        .materials[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(object.instance())].material)];
+  }
+
+  void fit(int width, int height) {
+    if (entry_points_ && entry_points_.width() == width && entry_points_.height() == height) return;
+    entry_points_ = gl::Texture::make_2d("entry points", gl::Format::rgba32f, width, height);
+    entry_normals_ = gl::Texture::make_2d("entry normals", gl::Format::rgba32f, width, height);
+    entry_cleared_ = gl::Texture::make_2d("cleared ways", gl::Format::r32f, width, height);
+  }
+
+  gl::Framebuffer entry_framebuffer(const gl::Texture& depth) const {
+    if (parameters_.stage == SearchStage::split)
+      return gl::Framebuffer("entries", {&entry_points_, &entry_normals_, &entry_cleared_}, &depth);
+    return gl::Framebuffer("entries", {&entry_points_, &entry_normals_}, &depth);
+  }
+
+  // What the search needs to know of an object and of the parameters.
+  void set_search(const GlassObject& object, const Material& material, const gl::Program& program) const {
+    const auto diagonal = static_cast<float>(object.cubes()->set().diagonal);
+    const float sine_c = std::min(1.0F, 1.0F / material.ior);
+    object.cubes()->bind(program);
+    function_table_.bind(3);
+    program.set("relative_index", 1.0F / material.ior);
+    program.set("min_step", parameters_.min_step * diagonal);
+    program.set("cosine_c", std::sqrt(1.0F - sine_c * sine_c));
+    program.set("iterations", parameters_.iterations);
+    program.set("vertex_iterations", parameters_.vertex_iterations);
+    program.set("refine", parameters_.refine);
+    program.set("switches", parameters_.switches);
+    program.set("object_number", static_cast<float>(object.instance() + 1));
+  }
+
+  void draw_object(const GlassObject& object, const Scene& scene, const Camera& camera,
+                   const gl::Program& program) const {
     const glm::mat4 to_world = object.to_world(scene);
-    const glm::mat3 linear(to_world);
-    const float determinant = glm::determinant(linear);
     program.use();
     program.set("object_to_clip", camera.projection() * camera.world_to_view() * to_world);
     program.set("eye", glm::vec3(glm::inverse(to_world) * glm::vec4(camera.view.eye, 1.0F)));
-    program.set("object_to_world", linear);
-    program.set("reflectance", material.reflectance);
-    program.set("metal", material.kind == SurfaceKind::metal);
-    program.set("metal_n", material.metal_n);
-    program.set("metal_k", material.metal_k);
-    if (object.cubes() != nullptr) {
-      const CubeSet& set = object.cubes()->set();
-      const auto diagonal = static_cast<float>(set.diagonal);
-      const float sine_c = std::min(1.0F, 1.0F / material.ior);
-      object.cubes()->bind(program);
-      function_table_.bind(3);
-      program.set("object_scale", std::cbrt(std::abs(determinant)));
-      program.set("ior", material.ior);
-      program.set("relative_index", 1.0F / material.ior);
-      program.set("absorption", material.absorption);
-      program.set("diagonal", diagonal);
-      program.set("min_step", parameters_.min_step * diagonal);
-      program.set("cosine_c", std::sqrt(1.0F - sine_c * sine_c));
-      program.set("iterations", parameters_.iterations);
-      program.set("vertex_iterations", parameters_.vertex_iterations);
-      program.set("refine", parameters_.refine);
-      program.set("switches", parameters_.switches);
-      program.set("reflections", parameters_.reflections);
-      program.set("show", static_cast<int>(parameters_.show));
-    }
+    program.set("object_to_world", glm::mat3(to_world));
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_TRUE);
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
-    glFrontFace(determinant < 0 ? GL_CW : GL_CCW);
+    glFrontFace(glm::determinant(glm::mat3(to_world)) < 0 ? GL_CW : GL_CCW);
     object.draw();
     glFrontFace(GL_CCW);
     glDisable(GL_CULL_FACE);
   }
 
+  void draw_mirrors(const Scene& scene, const Camera& camera) const {
+    for (const GlassObject& object : objects_) {
+      if (object.cubes() != nullptr) continue;
+      const Material& material = material_of(object, scene);
+      reflect_.set("reflectance", material.reflectance);
+      reflect_.set("metal", material.kind == SurfaceKind::metal);
+      reflect_.set("metal_n", material.metal_n);
+      reflect_.set("metal_k", material.metal_k);
+      draw_object(object, scene, camera, reflect_);
+    }
+  }
+
+  void draw_entries(const Scene& scene, const Camera& camera, const gl::Framebuffer& framebuffer) const {
+    framebuffer.bind();
+    framebuffer.clear_color(1, {0, 0, 0, 0});
+    for (const GlassObject& object : objects_) {
+      if (object.cubes() == nullptr) continue;
+      set_search(object, material_of(object, scene), entry_);
+      draw_object(object, scene, camera, entry_);
+    }
+  }
+
+  // The pixels of the bound framebuffer that show a dielectric; `only` one of them, or all.
+  void draw_glass(const Scene& scene, const Camera& camera, const gl::Program& program, const GlassObject* only) const {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    entry_points_.bind(5);
+    entry_normals_.bind(6);
+    entry_cleared_.bind(7);
+    program.use();
+    fullscreen_.bind();
+    for (const GlassObject& object : objects_) {
+      if (object.cubes() == nullptr || (only != nullptr && only != &object)) continue;
+      const Material& material = material_of(object, scene);
+      const glm::mat4 to_world = object.to_world(scene);
+      set_search(object, material, program);
+      program.set("eye", glm::vec3(glm::inverse(to_world) * glm::vec4(camera.view.eye, 1.0F)));
+      program.set("object_to_world", glm::mat3(to_world));
+      program.set("object_scale", std::cbrt(std::abs(glm::determinant(glm::mat3(to_world)))));
+      program.set("ior", material.ior);
+      program.set("absorption", material.absorption);
+      program.set("diagonal", static_cast<float>(object.cubes()->set().diagonal));
+      program.set("reflections", parameters_.reflections);
+      program.set("show", static_cast<int>(parameters_.show));
+      scissor(object, camera.projection() * camera.world_to_view() * to_world);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+  }
+
+  // The rectangle of the screen that the object's bounds cover.
+  void scissor(const GlassObject& object, const glm::mat4& object_to_clip) const {
+    const int width = entry_points_.width(), height = entry_points_.height();
+    glm::vec2 low(1.0F), high(-1.0F);
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2 & 1);
+      const glm::vec3 corner(glm::mix(object.solid()->low(), object.solid()->high(), share));
+      const glm::vec4 clip = object_to_clip * glm::vec4(corner, 1.0F);
+      if (clip.w <= 0) {  // beside or behind the eye
+        glScissor(0, 0, width, height);
+        return;
+      }
+      low = glm::min(low, glm::vec2(clip) / clip.w);
+      high = glm::max(high, glm::vec2(clip) / clip.w);
+    }
+    const glm::vec2 size(width, height);
+    const glm::ivec2 from(glm::floor((glm::clamp(low, -1.0F, 1.0F) * 0.5F + 0.5F) * size));
+    const glm::ivec2 to(glm::ceil((glm::clamp(high, -1.0F, 1.0F) * 0.5F + 0.5F) * size));
+    glScissor(from.x, from.y, std::max(0, to.x - from.x), std::max(0, to.y - from.y));
+  }
+
   // The first searches of the last frame's pixels, drawn again into textures.
   void compare_searches(nlohmann::json& out) const {
-    const Scene& scene = *frame_->scene;
-    const int width = frame_->camera.width, height = frame_->camera.height;
+    const int width = entry_points_.width(), height = entry_points_.height();
     const auto make = [&](const char* name) { return gl::Texture::make_2d(name, gl::Format::rgba32f, width, height); };
     const gl::Texture entry = make("entries"), ray = make("rays"), point = make("exits"), normal = make("exit normals");
-    const gl::Texture depth = gl::Texture::make_2d("search depth", gl::Format::depth32f, width, height);
-    const gl::Framebuffer framebuffer("searches", {&entry, &ray, &point, &normal}, &depth);
+    const gl::Framebuffer framebuffer("searches", {&entry, &ray, &point, &normal});
     gl::Defines defines = own_defines();
     defines.emplace_back("REPORT", "1");
-    const std::string folder = "algorithms/geocube/";
-    const gl::Program program("geocube report", {folder + "object.vert.glsl", folder + "glass.frag.glsl"}, defines);
+    const gl::Program program("geocube report", {kFullscreen, "algorithms/geocube/glass.frag.glsl"}, defines);
     SearchErrors errors;
     for (const GlassObject& object : objects_) {
       if (object.cubes() == nullptr) continue;
       framebuffer.bind();
-      for (int i = 0; i < 4; ++i)
-        framebuffer.clear_color(i, {0, 0, 0, 0});
-      framebuffer.clear_depth();
-      glEnable(GL_DEPTH_TEST);
-      glDepthFunc(GL_LEQUAL);
-      draw(object, scene, frame_->camera, program);
-      const Material& material = scene.materials[static_cast<std::size_t>(
-          scene.instances[static_cast<std::size_t>(object.instance())].material)];
+      framebuffer.clear_color(0, {0, 0, 0, 0});
+      draw_glass(*frame_->scene, frame_->camera, program, &object);
       errors.add({entry.read(), ray.read(), point.read(), normal.read()}, *object.solid(),
-                 static_cast<double>(material.ior));
+                 static_cast<double>(material_of(object, *frame_->scene).ior));
     }
     errors.write(out);
   }
@@ -187,7 +269,9 @@ class Geocube final : public Technique {
   Parameters parameters_;
   std::vector<GlassObject> objects_;
   gl::Texture function_table_;
-  gl::Program glass_, reflect_;
+  gl::Program entry_, glass_, reflect_;
+  gl::Texture entry_points_, entry_normals_, entry_cleared_;
+  gl::VertexArray fullscreen_;
   gl::Defines defines_;
   std::optional<Frame> frame_;
 };

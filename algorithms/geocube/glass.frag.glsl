@@ -3,14 +3,12 @@
 #include "algorithms/shaders/common/environment.glsl"
 #include "algorithms/shaders/common/optics.glsl"
 
-in vec3 object_position;
-in vec3 object_normal;
+layout(binding = 5) uniform sampler2D entry_points;
+layout(binding = 6) uniform sampler2D entry_normals;
 #ifdef SPLIT
-in float cleared;
-flat in int last_cube;
+layout(binding = 7) uniform sampler2D entry_cleared;
 #endif
-
-layout(std430, binding = 2) readonly buffer FirstCubes { uint first_cubes[]; };  // by triangle, four to a word
+uniform float object_number;
 
 uniform vec3 eye;  // in the object's space, like all but the light
 uniform mat3 object_to_world;
@@ -33,8 +31,12 @@ layout(location = 0) out vec4 radiance;
 vec3 light(vec3 direction) { return environment_radiance(normalize(object_to_world * direction)); }
 
 void main() {
-  vec3 v = normalize(object_position - eye);
-  vec3 n = normalize(object_normal);
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 entering = texelFetch(entry_normals, pixel, 0);
+  if (entering.w != object_number) discard;
+  vec4 at = texelFetch(entry_points, pixel, 0);
+  vec3 v = normalize(at.xyz - eye);
+  vec3 n = normalize(entering.xyz);
   // Interpolated, a normal may look away at the silhouette: there the ray grazes.
   float cosine = max(-dot(v, n), 0.0);
   if (-dot(v, n) < 0.0) n = normalize(n - 1.0001 * dot(v, n) * v);
@@ -43,14 +45,12 @@ void main() {
   vec3 h = refract(v, n, 1.0 / ior);
   vec3 weight = vec3(1.0 - reflected_share);
 
-  uint word = first_cubes[gl_PrimitiveID >> 2];
-  int cube = int(word >> uint(8 * (gl_PrimitiveID & 3)) & 255u);
+  int cube = int(at.w);
   float start = 0.0;
 #ifdef SPLIT
-  cube = last_cube;
-  start = max(cleared, min_step);
+  start = max(texelFetch(entry_cleared, pixel, 0).x, min_step);
 #endif
-  vec3 p = object_position;
+  vec3 p = at.xyz;
 #ifdef REPORT
   entry = vec4(p, h != vec3(0.0) ? 1.0 : 0.0);
   Exit first = find_exit(p, n, h, cube, start);
