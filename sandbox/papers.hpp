@@ -26,7 +26,10 @@ struct PaperPictures {
   std::string_view view;                       ///< empty: the scene's first
   std::span<const std::string_view> settings;  ///< name=value of the scene, for the reference and every picture
   int width = 0, height = 0;
-  std::span<const PaperPicture> pictures;
+  std::string_view surfaces = "forward";  ///< of the reference; "rays" where mirrors, metals or dielectrics stand
+  int samples = 1;                        ///< of the reference with rays, in a pixel
+  bool caustics = false;                  ///< of the reference with rays
+  std::span<const PaperPicture> pictures{};
   /// The picture whose FLIP map places the close-up, and how large a window is enlarged.
   std::string_view close_up_of;
   int close_up_width = 0, close_up_height = 0;

@@ -192,16 +192,23 @@ class Drawing {
     command.insert(command.end(), {"-o", path(output).string()});
   }
 
-  // It takes its surfaces from the forward pass, shadow maps and all, so that the metrics see the medium alone.
+  // Of a medium it takes the surfaces from the forward pass, shadow maps and all, so that the metrics see the medium
+  // alone.
   void draw_reference() {
     DrawnPicture& reference = out_.reference;
     reference.name = "reference";
     reference.exr = "reference.exr";
-    std::vector<std::string> command{"reference", out_.scene, "--surfaces", "forward"};
+    std::vector<std::string> command{"reference", out_.scene, "--surfaces", std::string(set_.surfaces)};
+    if (set_.samples > 1) command.insert(command.end(), {"--samples", std::to_string(set_.samples)});
+    if (set_.caustics) command.emplace_back("--caustics");
     add_place(command, reference.exr);
     reference.repeat = shown(command);
     Wanted wanted{.command = "reference", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
-    wanted.recipe["surfaces"] = "forward";
+    wanted.recipe["surfaces"] = set_.surfaces;
+    if (set_.surfaces == "rays") {
+      wanted.recipe["samples"] = set_.samples;
+      wanted.recipe["caustics"] = set_.caustics;
+    }
     truth_ = make(path(reference.exr), command, wanted, options_, reference);
     const json error = attribute(truth_, "pellucid.reference_error");
     out_.step_error_max = error.value("step_error_max", 0.0);
