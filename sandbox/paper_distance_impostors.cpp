@@ -43,7 +43,7 @@ constexpr PaperPicture kFig7[] = {
 
 constexpr Words kMiddle[] = {"scene.ball_x=0", "scene.ball_z=-2.6"};
 constexpr Words kOffCentre[] = {"scene.ball_x=1.6", "scene.ball_z=-2.6"};
-constexpr Words kCorner[] = {"scene.ball_x=3.2", "scene.ball_z=-2.6"};
+constexpr Words kCorner[] = {"scene.ball_x=2.7", "scene.ball_z=-2.6"};
 
 constexpr PaperPictures fig5(Words name, Words title, std::span<const Words> settings) {
   return {.name = name,

@@ -68,7 +68,7 @@ const PublishedFigure& published(int number) {
        reflections(),
        {{"in the middle", {{"scene.ball_x", 0.0}}},
         {"off-centre", {{"scene.ball_x", 1.6}}},
-        {"in a corner", {{"scene.ball_x", 3.2}}}}},
+        {"in a corner", {{"scene.ball_x", 2.7}}}}},
       {6, "the room with a box that hides a part of it", reflections(), {{"", {}}}},
       {7, "refraction by a ball", refractions(), {{"", {}}}},
   };
