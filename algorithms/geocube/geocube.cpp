@@ -11,6 +11,7 @@
 #include "algorithms/forward_pass.hpp"
 #include "algorithms/geocube/glass_object.hpp"
 #include "algorithms/geocube/native_errors.hpp"
+#include "gl/error.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::geocube {
@@ -111,6 +112,8 @@ class Geocube final : public Technique {
   }
 
   void compile(const gl::Defines& environment) {
+    if (parameters_.stage == SearchStage::split && parameters_.layers > 1)
+      throw InputError("geocube: stage = split takes layers = 1");
     gl::Defines defines = own_defines();
     defines.insert(defines.end(), environment.begin(), environment.end());
     if (glass_ && defines == defines_) return;

@@ -53,14 +53,14 @@ void main() {
   vec3 p = at.xyz;
 #ifdef REPORT
   entry = vec4(p, h != vec3(0.0) ? 1.0 : 0.0);
-  Exit first = find_exit(p, n, h, cube, start);
+  Exit first = trace_inside(p, n, h, cube, start);
   ray = vec4(h, float(first.steps));
   exit_point = vec4(first.point, first.bounded ? -first.path : first.path);
   exit_normal = vec4(first.normal, float(first.cube));
 #else
   vec3 shown = vec3(0.0);
   for (int k = 0; k <= reflections && h != vec3(0.0) && max(weight.x, max(weight.y, weight.z)) > 1e-4; ++k) {
-    Exit found = find_exit(p, n, h, cube, start);
+    Exit found = trace_inside(p, n, h, cube, start);
     weight *= transmitted(absorption, found.path * object_scale);
     n = found.normal;
     // A normal that looks against the ray belongs to another part of the surface: the ray grazes it.

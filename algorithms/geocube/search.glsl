@@ -124,3 +124,16 @@ Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
   result.normal = normalize(s.normal);
   return result;
 }
+
+#ifdef LAYERS
+#include "algorithms/geocube/layers.glsl"
+#endif
+
+// By whichever kind of cubes there is.
+Exit trace_inside(vec3 p, vec3 normal, vec3 h, int cube, float start) {
+#ifdef LAYERS
+  return find_exit_in_layers(p, normal, h, cube);
+#else
+  return find_exit(p, normal, h, cube, start);
+#endif
+}
