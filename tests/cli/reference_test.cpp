@@ -115,7 +115,7 @@ TEST_F(GlassReference, RefusesWhatCannotBe) {
 
 TEST_F(GlassReference, WarnsOfAnOpenSolid) {
   std::string open = kGlass;
-  open.replace(open.find("shape = \"sphere\"\nradius = 0.5"), 29, "shape = \"plane\"\nsize = [1, 1]");
+  open.replace(open.find("shape = \"sphere\"\nradius = 0.5"), 29, "shape = \"plane\"\nsize = [3, 3]");
   open.replace(open.find("size = [6, 6]"), 13, "size = [0.1, 0.1]");
   std::ofstream(folder / "glass.toml") << open;
   const test::Outcome outcome = trace({});
