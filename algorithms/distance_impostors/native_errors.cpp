@@ -18,7 +18,7 @@ constexpr double kConverged = 0.01;  // | |l| / |l'| − 1 |
 constexpr double kOffset = 1e-4;     // of the hit's distance, before a point counts as hidden
 
 struct Errors {
-  std::vector<double> hit_m, direction_deg, seen_deg;
+  std::vector<double> hit_m, direction_deg, seen_deg, exit_diagonals, exit_deg;
   std::size_t rays = 0, unconverged = 0, hidden = 0, escaped = 0, total = 0;
 };
 
@@ -46,15 +46,34 @@ glm::dvec3 xyz(const float* texel) {
   return {static_cast<double>(texel[0]), static_cast<double>(texel[1]), static_cast<double>(texel[2])};
 }
 
+// Where a refracted ray leaves the object, and in which direction, beside the exact way through it.
+void compare_exit(const InterfaceTracer& tracer, const Camera& camera, std::size_t pixel, int instance,
+                  const glm::dvec3& from, const glm::dvec3& R, Errors& errors) {
+  // GL's rows start at the bottom, the tracer's at the top.
+  const auto width = static_cast<std::size_t>(camera.width);
+  const int x = static_cast<int>(pixel % width), y = camera.height - 1 - static_cast<int>(pixel / width);
+  const InterfaceHit entry = tracer.primary(camera, x, y);
+  if (entry.instance != instance || !entry.front) return;
+  const InnerPath path = tracer.through(entry, camera.ray_direction(x + 0.5, y + 0.5), 0);
+  if (path.vertices.empty() || !path.vertices.front().leaving) return;
+  const InnerVertex& exit = path.vertices.front();
+  errors.exit_diagonals.push_back(glm::distance(from, exit.hit.position) / tracer.diagonal_m(instance));
+  errors.exit_deg.push_back(angle_deg(R, *exit.leaving));
+}
+
 // One object's pixels. The environment is everything but the object itself, as in its maps.
-void compare(const DynamicObjects::Object& object, const InterfaceTracer& tracer, const std::vector<float>& origins,
-             const std::vector<float>& directions, const std::vector<float>& hits, bool has_point, Errors& errors) {
+void compare(const DynamicObjects::Object& object, const InterfaceTracer& tracer, const Camera& camera,
+             const std::vector<float>& origins, const std::vector<float>& directions, const std::vector<float>& hits,
+             const LookupSettings& lookup, Errors& errors) {
+  const bool has_point = lookup.parallax != Parallax::none;
   const glm::dvec3 o(object.reference);
   for (std::size_t i = 0; i < origins.size(); i += 4) {
     if (origins[i + 3] < 0.5F) continue;
     ++errors.total;
     if (hits[i + 3] < 0.5F) continue;  // total reflection: this ray leaves nothing
     const glm::dvec3 x = xyz(&origins[i]), R = glm::normalize(xyz(&directions[i])), l = xyz(&hits[i]);
+    if (object.refractor != nullptr && lookup.bounces > 1)
+      compare_exit(tracer, camera, i / 4, object.instance, x, R, errors);
     const InterfaceHit hit = tracer.nearest_without(x, R, object.instance);
     ++errors.rays;
     if (!hit) {
@@ -100,7 +119,7 @@ void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass
     forward.draw_geometry(camera.projection() * camera.world_to_view(), covers, Objects::all);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     objects.draw_report(scene, forward, camera, maps, lookup, object);
-    compare(object, tracer, origin.read(), direction.read(), hit.read(), lookup.parallax != Parallax::none, errors);
+    compare(object, tracer, camera, origin.read(), direction.read(), hit.read(), lookup, errors);
   }
   if (errors.total == 0) return;
   const auto share = [](std::size_t part, std::size_t whole) {
@@ -115,6 +134,8 @@ void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass
     out["direction_error_deg_median_seen"] = quantile(errors.seen_deg, 0.5);
     out["direction_error_deg_q95_seen"] = quantile(errors.seen_deg, 0.95);
   }
+  summarise(errors.exit_diagonals, "exit_error_diagonals", out);
+  summarise(errors.exit_deg, "exit_direction_error_deg", out);
   if (lookup.parallax == Parallax::none) return;
   summarise(errors.hit_m, "hit_error_m", out);
   if (lookup.parallax == Parallax::impostor) out["unconverged_share"] = share(errors.unconverged, hits);
@@ -122,7 +143,7 @@ void compare_hits(DynamicObjects& objects, const Scene& scene, const ForwardPass
 
 void compare_caustics(const Caustics& caustics, const Scene& scene, nlohmann::json& out) {
   PhotonOptions options;
-  options.photons = std::uint64_t{1} << 18U;
+  options.photons = std::uint64_t{1} << 17U;
   const Photons photons = trace_photons(scene, {}, options);
   const auto mean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; };
   const double landed = caustics.landed_w(), reference = mean(photons.landed.mean);

@@ -13,6 +13,8 @@ namespace pellucid::distance_impostors {
 /// `unconverged_share`: of the hits with |l| / |l'| more than 1 % off 1;
 /// `hidden_share`: of the true hits that the reference point does not see; `direction_error_deg_median_seen`: of the
 /// others;
+/// `exit_error_diagonals_…`, `exit_direction_error_deg_…`: of refracted rays, where they leave the object for the first
+/// time, in diagonals of the object, and in which direction, beside the exact way through it;
 /// `escaped_share`: of the rays that hit nothing, which all of these leave out.
 void compare_hits(DynamicObjects&, const Scene&, const ForwardPass&, const Camera&, const MapSettings&,
                   const LookupSettings&, nlohmann::json& out);

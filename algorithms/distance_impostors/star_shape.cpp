@@ -78,8 +78,8 @@ glm::vec3 choose_center(const Mesh& mesh) {
 
 std::string describe(const std::string& name, const StarShape& shape) {
   return fmt::format(
-      "refractor '{}' is not star-shaped: {:.2g} % of its area faces its centre, {:.2g} % of the directions meet more "
-      "than one layer of it and {:.2g} % none; the refractor map keeps the nearest",
+      "refractor '{}' is not star-shaped: {:.3g} % of its area faces its centre, {:.3g} % of the directions meet more "
+      "than one layer of it and {:.3g} % none; the refractor map keeps the nearest",
       name, 100 * shape.hidden_area, 100 * shape.folded, 100 * shape.uncovered);
 }
 
