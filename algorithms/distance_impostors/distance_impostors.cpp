@@ -9,7 +9,10 @@ namespace {
 class DistanceImpostors final : public Technique {
  public:
   ParameterRef parameters() override { return bind_parameters(parameters_); }
-  void prepare(const Scene& scene) override { localized_.prepare(scene, maps(), lookup(), caustics()); }
+  void prepare(const Scene& scene) override {
+    layers_ = layers_of(parameters_.cube_pass);
+    localized_.prepare(scene, maps(), lookup(), caustics());
+  }
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
     localized_.render(scene, camera, forward, target, timer, maps(), lookup());
@@ -23,7 +26,7 @@ class DistanceImpostors final : public Technique {
     return {.cube_size = p.cube_size,
             .format = p.cube_format,
             .store = p.distance,
-            .layers = p.cube_pass,
+            .layers = layers_,
             .anchor = p.reference_point,
             .anchor_point = {p.reference_x_m, p.reference_y_m, p.reference_z_m},
             .refresh = p.refresh,
@@ -51,6 +54,7 @@ class DistanceImpostors final : public Technique {
   }
 
   Parameters parameters_;
+  CubeLayers layers_ = CubeLayers::geometry;
   Localized localized_{"distance_impostors"};
 };
 

@@ -18,7 +18,7 @@ struct Parameters {
   int cube_size = 512;
   CubeFormat cube_format = CubeFormat::half;
   DistanceStore distance = DistanceStore::texture;
-  CubeLayers cube_pass = CubeLayers::geometry;
+  CubePass cube_pass = CubePass::automatic;
   Anchor reference_point = Anchor::object;
   float reference_x_m = 0, reference_y_m = 0, reference_z_m = 0;
   Refresh refresh = Refresh::frames;
@@ -65,10 +65,10 @@ struct Parameters {
                             .when = Change::precompute,
                             .choices = "alpha|texture"});
     visit(PARAM(cube_pass), {.cite = "beyond the paper",
-                             .doc = "faces of a cube map chosen by a geometry shader, by the vertex shader, or drawn "
-                                    "one by one",
+                             .doc = "faces of a cube map chosen by a geometry shader, by the vertex shader (automatic: "
+                                    "where it can), or drawn one by one",
                              .when = Change::precompute,
-                             .choices = "geometry|vertex|faces"});
+                             .choices = "automatic|geometry|vertex|faces"});
     visit(PARAM(reference_point), {.symbol = "o",
                                    .cite = "Sec. 2",
                                    .doc = "where the maps are drawn from: each object's middle, the middle of the "

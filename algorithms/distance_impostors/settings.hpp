@@ -12,6 +12,12 @@ namespace pellucid::distance_impostors {
 enum class CubeFormat { half, single };
 /// Where the distance is kept.
 enum class DistanceStore { alpha, texture };
+/// CubeLayers, or one traversal by the vertex shader where it can choose layers, else by a geometry shader.
+enum class CubePass { automatic, geometry, vertex, faces };
+inline CubeLayers layers_of(CubePass pass) {
+  if (pass != CubePass::automatic) return static_cast<CubeLayers>(static_cast<int>(pass) - 1);
+  return vertex_shader_chooses_layers() ? CubeLayers::vertex : CubeLayers::geometry;
+}
 /// When the maps of an object are drawn again.
 enum class Refresh { once, frames, interval, movement };
 /// Where the reference point of an object's maps lies.

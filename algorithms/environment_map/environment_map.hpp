@@ -16,7 +16,7 @@ struct Parameters {
   float proxy_radius_m = 0;
   int cube_size = 512;
   distance_impostors::CubeFormat cube_format = distance_impostors::CubeFormat::half;
-  CubeLayers cube_pass = CubeLayers::geometry;
+  distance_impostors::CubePass cube_pass = distance_impostors::CubePass::automatic;
   distance_impostors::Anchor reference_point = distance_impostors::Anchor::object;
   float reference_x_m = 0, reference_y_m = 0, reference_z_m = 0;
   distance_impostors::Refresh refresh = distance_impostors::Refresh::frames;
@@ -46,10 +46,10 @@ struct Parameters {
                                .when = Change::precompute,
                                .choices = "half|single"});
     visit(PARAM(cube_pass), {.cite = "beyond the paper",
-                             .doc = "faces of a cube map chosen by a geometry shader, by the vertex shader, or drawn "
-                                    "one by one",
+                             .doc = "faces of a cube map chosen by a geometry shader, by the vertex shader (automatic: "
+                                    "where it can), or drawn one by one",
                              .when = Change::precompute,
-                             .choices = "geometry|vertex|faces"});
+                             .choices = "automatic|geometry|vertex|faces"});
     visit(PARAM(reference_point), {.symbol = "o",
                                    .cite = "Szirmay-Kalos et al. 2005, Sec. 2",
                                    .doc = "where the maps are drawn from: each object's middle, the middle of the "

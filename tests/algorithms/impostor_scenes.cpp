@@ -167,6 +167,7 @@ TEST(DistanceImpostors, DrawsAndStoresMapsAlike) {
   };
   const Image usual = image({{"cube_size", "128"}});
   EXPECT_LT(test::difference(usual, image({{"cube_size", "128"}, {"cube_pass", "faces"}})).max, 0.002);
+  EXPECT_LT(test::difference(usual, image({{"cube_size", "128"}, {"cube_pass", "geometry"}})).max, 0.002);
   EXPECT_LT(test::difference(usual, image({{"cube_size", "128"}, {"distance", "alpha"}})).max, 0.002);
   EXPECT_LT(test::difference(usual, image({{"cube_size", "128"}, {"cube_format", "single"}})).mean, 0.002);
   if (epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")) {
