@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -236,15 +237,20 @@ std::vector<std::string> provenance_notes(const TableInfo& info, const ChosenRow
   if (rows.empty()) return notes;
   const auto names = machines(rows);
   const auto clocks = distinct(rows, "clock");
-  notes.push_back(
-      fmt::format("Ours: {}; {}; {}.", names.empty() ? "device unknown" : *names.begin(), sizes_text(rows),
-                  clock_text(clocks.size() == 1 ? *clocks.begin() : fmt::format("{}", fmt::join(clocks, ", ")))));
+  const auto frames = extent(rows, "frames");
+  notes.push_back(fmt::format(
+      "Ours: {}; {}{}.", names.empty() ? "device unknown" : *names.begin(), sizes_text(rows),
+      frames ? "; " + clock_text(clocks.size() == 1 ? *clocks.begin() : fmt::format("{}", fmt::join(clocks, ", ")))
+             : ""));
   for (const std::string& scene : distinct(rows, "scene")) {
+    Rows here;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(here),
+                 [&](const json* row) { return text(*row, "scene") == scene; });
     const std::string instead = stand_in(scene);
-    notes.push_back(fmt::format("Scene {}, view {}{}.", scene, fmt::join(distinct(rows, "view"), ", "),
+    notes.push_back(fmt::format("Scene {}, view {}{}.", scene, fmt::join(distinct(here, "view"), ", "),
                                 instead.empty() ? "" : ": " + instead));
   }
-  if (const auto frames = extent(rows, "frames")) {
+  if (frames) {
     const std::string count = frames->first == frames->second ? fmt::format("{}", frames->first)
                                                               : fmt::format("{} to {}", frames->first, frames->second);
     notes.push_back(fmt::format("Intervals are 95 % bootstrap intervals of the median, of {} frames a point.", count));

@@ -99,6 +99,7 @@ struct Way {
   const char* slices;  ///< block
 };
 constexpr Way kWays[] = {{"points at the back, as in the paper", "hulls", "slices"},
+                         {"points at the back, local coordinates in floats", "hulls_float_map", "slices"},
                          {"points in the middle", "hulls_middle", "slices"},
                          {"points in the middle, 32-bit floats", "hulls_middle_single", "slices_single"}};
 

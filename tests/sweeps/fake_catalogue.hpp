@@ -88,4 +88,7 @@ using pellucid::test::TemporaryFolder;
 /// The message of the InputError that `f` throws; fails the test when it throws none.
 std::string input_error(const std::function<void()>& f);
 
+/// True if a built-in spec cannot be read because its scenes' assets have not been fetched.
+bool lacks_assets(const std::string& spec);
+
 }  // namespace pellucid::sweeps::test

@@ -96,6 +96,14 @@ TEST(Spec, GroupsNeedNoQuotes) {
   EXPECT_EQ(block.fixed[1].name, "shadow.blur");
 }
 
+TEST(Spec, AZipMayRepeatAValue) {
+  const Spec spec = parse(
+      "name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['ball']\ncombine='zip'\n[run.axes]\n"
+      "hulls=[2,4,4]\nsamples=[4,4,8]\n");
+  EXPECT_EQ(spec.blocks.at(0).axes.at(0).values,
+            (std::vector<Value>{std::int64_t{2}, std::int64_t{4}, std::int64_t{4}}));
+}
+
 TEST(Spec, AScenesPathCountsFromTheSpec) {
   const Spec spec = parse_spec("name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['../ball.toml']\n",
                                "a/b/s.toml", FakeCatalogue());

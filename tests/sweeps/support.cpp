@@ -14,4 +14,14 @@ std::string input_error(const std::function<void()>& f) {
   return "";
 }
 
+bool lacks_assets(const std::string& spec) {
+  try {
+    load_spec(spec);
+    return false;
+  } catch (const InputError& e) {
+    if (std::string(e.what()).find("./bootstrap assets") == std::string::npos) throw;
+    return true;
+  }
+}
+
 }  // namespace pellucid::sweeps::test

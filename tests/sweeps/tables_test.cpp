@@ -217,6 +217,7 @@ TEST(PaperSpecs, AllExpand) {
                            "sampling_hulls_curves_preview"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   for (const std::string& name : names) {
+    if (lacks_assets(name)) continue;
     const Spec spec = load_spec(name);
     EXPECT_EQ(spec.name, name) << "rows are found by the name of the built-in spec";
     EXPECT_FALSE(spec.title.empty()) << name;
