@@ -62,7 +62,8 @@ struct TreeRay {
   glm::dvec3 origin{0.0}, direction{0.0};
   double begin = 0.0, end = std::numeric_limits<double>::infinity();  ///< of the root's own segment
   Solids inside;
-  int only_first = -1;  ///< an instance: nothing is followed or called if the ray meets anything else before it
+  double unabsorbed_m = 0.0;  ///< from the origin, where `inside` does not hold yet
+  int only_first = -1;        ///< an instance: nothing is followed or called if the ray meets anything else before it
 };
 
 class RayTree {
@@ -119,7 +120,8 @@ Hit RayTree::trace(const TreeRay& root, const TreeLimits& limits, Scratch& scrat
       first = hit;
       if (root.only_first >= 0 && hit.index != root.only_first) return first;
     }
-    if (!current.inside.empty()) current.weight *= absorbed(current, hit.distance);
+    if (!current.inside.empty())
+      current.weight *= absorbed(current, hit.distance - (at_root ? root.unabsorbed_m : 0.0));
     if (hit.instance == nullptr) {
       if (!current.inside.empty()) tally.lost_weight += worst(current.weight);
       miss(current.direction, current.weight);

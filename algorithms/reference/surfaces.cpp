@@ -181,6 +181,8 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   eye.origin = glm::dvec3(camera.view.eye);
   eye.inside = tree.solids_at(eye.origin);
   const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.view.target) - eye.origin);
+  const bool solid = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const Material& m) { return m.kind == SurfaceKind::dielectric; });
   const auto through = [&](double x, double y) {
     TreeRay ray = eye;
     ray.direction = camera.ray_direction(x, y);
@@ -188,6 +190,11 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     const double per_depth = 1.0 / glm::dot(ray.direction, forward);
     ray.begin = static_cast<double>(camera.view.near_m) * per_depth;
     ray.end = static_cast<double>(camera.view.far_m) * per_depth;
+    // What the near plane cuts off is not there, and the ray may begin inside of what it cuts open.
+    if (solid && geometry.occluded(ray.origin, ray.direction, 0.0, ray.begin)) {
+      ray.inside = tree.solids_at(ray.origin + ray.begin * ray.direction);
+      ray.unabsorbed_m = ray.begin;
+    }
     return ray;
   };
 

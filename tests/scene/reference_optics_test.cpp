@@ -149,6 +149,19 @@ TEST(ReferenceOptics, InsideABallOfGlass) {
   EXPECT_NEAR(seen(scene, {0, 0, 0}, {-0.2F, -1.0F, 0.5F}, options).x, expected, 1e-4);
 }
 
+TEST(ReferenceOptics, TheNearPlaneMayCutGlassOpen) {
+  Scene scene;
+  set_environment(scene, glm::vec3(0.0F), glm::vec3(0.0F), glm::vec3(1.0F));
+  add(scene, make_box({4.0F, 0.5F, 4.0F}), glass(1.5F, glm::vec3(0.5F)));
+  SurfaceOptions options;
+  options.reflections = 0;
+  Camera camera = looking({0.21F, 0.375F, 0.13F}, {0.21F, 0.0F, 0.13F}, 1, 1.0F, {0, 0, 1});
+  camera.view.near_m = 0.25F;  // half-way between the top, at 0.25, and the middle
+  const SurfaceLayer layer = trace_surfaces(scene, camera, options);
+  EXPECT_NEAR(pixel(layer.radiance, 0, 0).x, 0.96 * std::exp(-0.5 * 0.375), 1e-6);
+  EXPECT_EQ(layer.statistics.lost_weight_mean, 0.0);
+}
+
 TEST(ReferenceOptics, ABubbleInGlassIsOfTheOuterSolidsIndex) {
   Scene scene;
   set_environment(scene, glm::vec3(0.0F), glm::vec3(0.0F), glm::vec3(1.0F));
