@@ -44,7 +44,7 @@ void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bo
   middles_.clear();
   warnings_.clear();
   cost_ = {};
-  cost_timer_ = gl::PassTimer(gl::Detail::frame);
+  cost_timer_.emplace(gl::Detail::frame);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     if (!optical(scene, instance)) continue;
@@ -227,7 +227,7 @@ void DynamicObjects::bind(const Scene& scene, const Object& object, const Lookup
 }
 
 const DynamicObjects::Cost& DynamicObjects::cost() {
-  while (const auto time = cost_timer_.poll()) {
+  while (const auto time = cost_timer_ ? cost_timer_->poll() : std::nullopt) {
     cost_.last_ms = time->frame_ms;
     cost_.total_ms += time->frame_ms;
     ++cost_.timed;

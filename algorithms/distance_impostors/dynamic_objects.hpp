@@ -56,7 +56,7 @@ class DynamicObjects {
 
   const std::vector<Object>& objects() const { return objects_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
-  gl::PassTimer& cost_timer() { return cost_timer_; }
+  gl::PassTimer& cost_timer() { return *cost_timer_; }  ///< after prepare()
   const Cost& cost();
   std::string reload_shaders();
 
@@ -81,7 +81,7 @@ class DynamicObjects {
     gl::Program program;
   };
   std::map<std::pair<SurfaceKind, Use>, Compiled> programs_;
-  gl::PassTimer cost_timer_{gl::Detail::frame};
+  std::optional<gl::PassTimer> cost_timer_;  // a technique is made without a context
   Cost cost_;
 };
 
