@@ -131,6 +131,8 @@ std::string description(const HeatMap& map) {
       if (map.values[r][c]) text += fmt::format(" ({}, {}): {:.5g}.", map.columns[c], map.rows[r], *map.values[r][c]);
     }
   }
+  for (const HeatMap::Mark& mark : map.marks)
+    text += fmt::format(" Marked as {}: ({}, {}).", mark.label, map.columns[mark.cell.column], map.rows[mark.cell.row]);
   return map.note.empty() ? text : text + " " + map.note;
 }
 
