@@ -4,8 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <deque>
-#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -17,12 +15,12 @@
 #include "algorithms/render_session.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
+#include "sweeps/frame_clock.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
 constexpr const char* kTechnique = "sampling_hulls";
-constexpr std::size_t kFramesInFlight = 8;
 constexpr std::size_t kWarmUpFrames = 64;
 constexpr double kWarmUpSeconds = 10;
 
@@ -182,40 +180,6 @@ class BareHulls {
   int fetches_per_blend_ = 0;
 };
 
-using Draw = std::function<void(gl::PassTimer&)>;
-
-/// Draws frames one behind the other without waiting for the GPU, and puts their times where each belongs.
-class FrameClock {
- public:
-  gl::Clock clock() const { return timer_.clock(); }
-
-  /// `into`: nullptr for a frame whose time does not count.
-  void draw(const Draw& subject, std::vector<double>* into) {
-    if (due_.size() >= kFramesInFlight) take(*timer_.wait());
-    subject(timer_);
-    due_.push_back(into);
-    while (auto time = timer_.poll())
-      take(*time);
-  }
-  void drain() {
-    while (!due_.empty())
-      take(*timer_.wait());
-  }
-
- private:
-  void take(const gl::FrameTime& time) {
-    assert(!due_.empty());
-    if (!std::isfinite(time.frame_ms) || time.frame_ms <= 0) {
-      throw RuntimeError(fmt::format("bench: the clock gave {} ms for a frame", time.frame_ms));
-    }
-    if (due_.front() != nullptr) due_.front()->push_back(time.frame_ms);
-    due_.pop_front();
-  }
-
-  gl::PassTimer timer_{gl::Detail::frame};
-  std::deque<std::vector<double>*> due_;
-};
-
 double block_median(const std::vector<double>& samples, std::size_t first, std::size_t count) {
   std::vector<double> block(samples.begin() + static_cast<std::ptrdiff_t>(first),
                             samples.begin() + static_cast<std::ptrdiff_t>(first + count));
@@ -288,12 +252,12 @@ BenchResult bench_sampling_hulls(const BenchRequest& request, nlohmann::json& re
   result.fetches_per_blend = bare.fetches_per_blend();
   result.fetches_per_pixel = result.blends_per_pixel * result.fetches_per_blend;
 
-  const std::array<Draw, 3> subjects{[&](gl::PassTimer& timer) { session.render(timer); },
-                                     [&](gl::PassTimer& timer) { bare.render(timer, true); },
-                                     [&](gl::PassTimer& timer) { bare.render(timer, false); }};
+  const std::array<FrameClock::Draw, 3> subjects{[&](gl::PassTimer& timer) { session.render(timer); },
+                                                 [&](gl::PassTimer& timer) { bare.render(timer, true); },
+                                                 [&](gl::PassTimer& timer) { bare.render(timer, false); }};
   std::array<std::vector<double>, 3> samples;
   FrameClock clock;
-  for (const Draw& subject : subjects) {
+  for (const FrameClock::Draw& subject : subjects) {
     WarmUp warm_up(kWarmUpFrames, kWarmUpSeconds / static_cast<double>(subjects.size()));
     std::vector<double> times;
     while (!warm_up.done()) {

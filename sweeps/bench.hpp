@@ -11,6 +11,10 @@
 
 /// What a technique's frame costs beside the least that its texture fetches and blends could cost: a bare shader over
 /// the same pixels, timed on the same device in the same run.
+namespace pellucid::gl {
+class Context;
+}
+
 namespace pellucid::sweeps {
 
 struct BenchRequest {
@@ -44,6 +48,20 @@ struct BenchResult {
 /// Throws InputError for a request that cannot be met, RuntimeError when the clock gives no usable time. Needs a
 /// current GL context. `recipe` receives what was drawn: scene, view, size and every parameter with its value.
 BenchResult bench_sampling_hulls(const BenchRequest&, nlohmann::json& recipe);
+
+/// The hulls against VTK's GPU ray caster on the same volume and view, alone in a black world and white where it is
+/// opaque, so that nothing but the medium is drawn. VTK's sample distance is the longest at which its error against the
+/// reference is no larger than the hulls', or where there is none, that of its least error.
+struct BenchVtk {
+  TimingSummary method, vtk;  ///< whole frames
+  BenchRatio ratio;           ///< method / vtk
+  double sample_distance_m = 0;
+  double method_rmse = 0, vtk_rmse = 0;  ///< root of the mean squared error where the volume is seen
+  bool equal() const { return vtk_rmse <= method_rmse; }
+};
+/// Throws InputError for a request that cannot be met, RuntimeError with the reason when VTK cannot draw this volume.
+/// `context` is current before and, unless it throws, after; VTK draws in one of its own on the same device.
+BenchVtk bench_against_vtk(const BenchRequest&, gl::Context& context);
 
 /// The ratio that bench_sampling_hulls gives: of each `block` samples, median(a) − median(c) over median(b) −
 /// median(c); an empty `c` counts as zero. Nothing when so many denominators are not positive that the interval has no

@@ -29,8 +29,25 @@ struct Options {
   std::vector<std::string> settings;
   int frames = sweeps::BenchRequest{}.frames;
   std::optional<int> device;
+  bool vtk = true;
   bool json = false;
 };
+
+/// The comparison with VTK, or why there is none.
+struct AgainstVtk {
+  std::optional<sweeps::BenchVtk> result;
+  std::string skipped;
+};
+
+AgainstVtk against_vtk(const Options& options, const sweeps::BenchRequest& request, gl::Context& context) {
+  if (!options.vtk) return {std::nullopt, "not asked for"};
+  try {
+    return {sweeps::bench_against_vtk(request, context), {}};
+  } catch (const RuntimeError& error) {
+    context.make_current();
+    return {std::nullopt, error.what()};
+  }
+}
 
 ordered_json time_json(const TimingSummary& t) {
   return {
@@ -54,6 +71,29 @@ void print_ratio(const char* what, const std::optional<BenchRatio>& ratio) {
   }
 }
 
+ordered_json vtk_json(const AgainstVtk& against) {
+  if (!against.result) return {{"skipped", against.skipped}};
+  const sweeps::BenchVtk& r = *against.result;
+  return {{"method", time_json(r.method)}, {"vtk", time_json(r.vtk)}, {"ratio", ratio_json(r.ratio)},
+          {"method_rmse", r.method_rmse},  {"vtk_rmse", r.vtk_rmse},  {"sample_distance_m", r.sample_distance_m},
+          {"equal_error", r.equal()}};
+}
+
+void print_vtk(const AgainstVtk& against) {
+  if (!against.result) {
+    fmt::print("against VTK: skipped, {}\n", against.skipped);
+    return;
+  }
+  const sweeps::BenchVtk& r = *against.result;
+  fmt::print("the medium alone, white over black, against VTK's GPU ray casting\n");
+  print_time("frame", r.method);
+  print_time("VTK's frame", r.vtk);
+  print_ratio("frame / VTK's", r.ratio);
+  fmt::print("  {:<34} {:9.3g}     root mean square where the volume is seen\n", "error", r.method_rmse);
+  fmt::print("  {:<34} {:9.3g}     at a sample distance of {:.3g} m{}\n", "VTK's error", r.vtk_rmse,
+             r.sample_distance_m, r.equal() ? "" : ", its least: it does not come down to the frame's");
+}
+
 int bench(const Options& options) {
   const Size size = parse_size(options.size);
   if (const auto& info = find_technique(options.technique); info.name != "sampling_hulls") {
@@ -62,9 +102,10 @@ int bench(const Options& options) {
   sweeps::BenchRequest request{options.scene, options.view, size.width, size.height, {}, options.frames};
   for (const std::string& setting : options.settings)
     request.settings.push_back(parse_assignment(setting));
-  const gl::Context context({.device = options.device});
+  gl::Context context({.device = options.device});
   nlohmann::json recipe;
   const BenchResult result = sweeps::bench_sampling_hulls(request, recipe);
+  const AgainstVtk vtk = against_vtk(options, request, context);
 
   if (options.json) {
     ordered_json out = recipe;
@@ -78,6 +119,7 @@ int bench(const Options& options) {
     out["blends_per_pixel"] = result.blends_per_pixel;
     out["fetches_per_blend"] = result.fetches_per_blend;
     out["fetches_per_pixel"] = result.fetches_per_pixel;
+    out["against_vtk"] = vtk_json(vtk);
     out["device"] = context.device().renderer;
     out["driver"] = context.device().version;
     out["clock"] = result.clock;
@@ -100,7 +142,8 @@ int bench(const Options& options) {
   fmt::print("  {:<34} {:9.3f}\n", "blends per pixel", result.blends_per_pixel);
   fmt::print("  {:<34} {:9.3f}     {} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
              result.fetches_per_blend);
-  fmt::print("  on {}, clock {}\n", context.device().renderer, result.clock);
+  print_vtk(vtk);
+  fmt::print("on {}, clock {}\n", context.device().renderer, result.clock);
   return kDone;
 }
 
@@ -109,7 +152,7 @@ int bench(const Options& options) {
 void add_bench(CLI::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand(
-      "bench", "Time a technique's frame against a bare shader with the same texture fetches and blends");
+      "bench", "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK");
   app->add_option("technique", options->technique, "The technique; sampling_hulls has a bare shader")->required();
   app->add_option("--scene", options->scene, "A scene's name (pellucid list scenes) or a .toml file")
       ->capture_default_str();
@@ -122,6 +165,7 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
                   fmt::format("Frames timed of each, rounded up to whole blocks of {}", BenchResult::kBlockFrames))
       ->check(CLI::Range(2 * BenchResult::kBlockFrames, 100000))
       ->capture_default_str();
+  app->add_flag("!--no-vtk", options->vtk, "Leave out the comparison with VTK's GPU ray casting");
   app->add_option("--device", options->device, "EGL device (pellucid devices)");
   app->add_flag("--json", options->json, "Print the measurement as JSON");
   app->footer(
@@ -129,7 +173,10 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
       "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
       "ratio\n"
       "is the median over the blocks, so that it may differ a little from that of the medians. Times of different\n"
-      "machines or runs do not compare.");
+      "machines or runs do not compare.\n"
+      "Against VTK the scene's volume is drawn alone and white over black, and VTK's sample distance is the longest "
+      "at\n"
+      "which its error against the reference is no larger than the technique's. VTK needs no display for it.");
   commands.push_back({app, [options] { return bench(*options); }});
 }
 

@@ -20,7 +20,7 @@ class Bench : public testing::Test {
     return pellucid(words);
   }
   json measured(Words more = {}) const {
-    more.push_back("--json");
+    more.insert(more.end(), {"--json", "--no-vtk"});
     const Outcome outcome = bench(more);
     EXPECT_TRUE(succeeded(outcome));
     return json::parse(outcome.out);
@@ -73,11 +73,27 @@ TEST_F(Bench, FollowsTheSettingsOfShadowsAndFrame) {
   EXPECT_EQ(row.at("parameters").at("coordinates"), "single");
 }
 
+TEST_F(Bench, ComparesWithVtkAtEqualError) {
+  const Outcome outcome = bench({"--json"});
+  ASSERT_TRUE(succeeded(outcome));
+  const json against = json::parse(outcome.out).at("against_vtk");
+  ASSERT_FALSE(against.contains("skipped")) << against;
+  for (const char* subject : {"method", "vtk"})
+    expect_interval(against.at(subject), "frame_ms_median", "frame_ms_ci95_low", "frame_ms_ci95_high");
+  expect_interval(against.at("ratio"), "median", "ci95_low", "ci95_high");
+  EXPECT_GT(against.at("sample_distance_m").get<double>(), 0);
+  const double ours = against.at("method_rmse").get<double>(), theirs = against.at("vtk_rmse").get<double>();
+  EXPECT_GT(ours, 0);
+  EXPECT_LT(theirs, 0.1) << "VTK draws the same volume";
+  EXPECT_EQ(against.at("equal_error").get<bool>(), theirs <= ours);
+  EXPECT_EQ(measured().at("against_vtk").at("skipped"), "not asked for");
+}
+
 TEST_F(Bench, RoundsFramesUpToWholeBlocks) {
   const Outcome outcome = bench({"--json", "--frames", "9"});
   EXPECT_TRUE(refused(outcome, 2, {"frames"}));  // given twice
   const Outcome once =
-      pellucid({"bench", "sampling_hulls", "--scene", scene, "--size", "32x24", "--frames", "9", "--json"});
+      pellucid({"bench", "sampling_hulls", "--scene", scene, "--size", "32x24", "--frames", "9", "--json", "--no-vtk"});
   ASSERT_TRUE(succeeded(once));
   const json row = json::parse(once.out);
   EXPECT_EQ(row.at("frames").get<int>() % row.at("block_frames").get<int>(), 0);
@@ -87,7 +103,7 @@ TEST_F(Bench, RoundsFramesUpToWholeBlocks) {
 TEST_F(Bench, PrintsTheSameForPeople) {
   const Outcome outcome = bench();
   ASSERT_TRUE(succeeded(outcome));
-  for (const char* words : {"frame / bare", "blends per pixel", "texture fetches per pixel", "clock"})
+  for (const char* words : {"frame / bare", "blends per pixel", "texture fetches per pixel", "frame / VTK's", "clock"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words;
 }
 
