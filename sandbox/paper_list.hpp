@@ -7,6 +7,7 @@ namespace pellucid::sandbox {
 
 using Words = std::string_view;
 
+Paper geocube_paper();
 Paper sampling_hulls_paper();
 Paper distance_impostors_paper();
 

@@ -13,7 +13,7 @@
 namespace pellucid::sandbox {
 
 std::span<const Paper> papers() {
-  static const std::vector<Paper> kPapers{distance_impostors_paper(), sampling_hulls_paper()};
+  static const std::vector<Paper> kPapers{geocube_paper(), distance_impostors_paper(), sampling_hulls_paper()};
   return kPapers;
 }
 

@@ -70,4 +70,10 @@ Table distance_impostors_fig5(const TableInfo&, const ChosenRows&);
 Table distance_impostors_fig6(const TableInfo&, const ChosenRows&);
 Table distance_impostors_fig7(const TableInfo&, const ChosenRows&);
 
+/// Published numbers of Chan and Wang 2005, Table 2, beside ours, and the errors of their figures.
+TableInfo geocube_table2_info();
+Table geocube_table2(const TableInfo&, const ChosenRows&);
+TableInfo geocube_fig16_info();
+Table geocube_fig16(const TableInfo&, const ChosenRows&);
+
 }  // namespace pellucid::sweeps

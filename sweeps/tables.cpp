@@ -30,7 +30,9 @@ const std::vector<Entry>& entries() {
                                       {sampling_hulls_references_info(), &sampling_hulls_references},
                                       {distance_impostors_figure_info(5), &distance_impostors_fig5},
                                       {distance_impostors_figure_info(6), &distance_impostors_fig6},
-                                      {distance_impostors_figure_info(7), &distance_impostors_fig7}};
+                                      {distance_impostors_figure_info(7), &distance_impostors_fig7},
+                                      {geocube_table2_info(), &geocube_table2},
+                                      {geocube_fig16_info(), &geocube_fig16}};
   return all;
 }
 

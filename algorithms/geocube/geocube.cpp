@@ -62,12 +62,13 @@ class Geocube final : public Technique {
 
   void native_errors(nlohmann::json& out) const override {
     double built_s = 0, unseen = 0, dropped = 0;
-    std::size_t cubes = 0, bytes = 0;
+    std::size_t cubes = 0, bytes = 0, triangles = 0;
     for (const GlassObject& object : objects_) {
       if (object.cubes() == nullptr) continue;
       const CubeSet& set = object.cubes()->set();
       built_s += set.build_s;
       cubes += set.cubes.size();
+      triangles += object.triangle_count();
       bytes += texture_bytes(set.options, set.cubes.size());
       unseen = std::max(unseen, set.unseen_share);
       for (const Cube& cube : set.cubes)
@@ -76,6 +77,7 @@ class Geocube final : public Technique {
     if (cubes == 0) return;
     out["precomputation_s"] = built_s;  // of the run that filled the cache, if it was cached
     out["cubes_placed"] = cubes;
+    out["object_triangles"] = triangles;
     out["cube_bytes"] = bytes;
     out["unseen_share"] = unseen;
     out["dropped_share"] = dropped;

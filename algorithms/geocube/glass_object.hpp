@@ -27,6 +27,7 @@ class GlassObject {
 
   const Solid* solid() const { return solid_.get(); }  ///< null for a mirror or metal
   const CubeTextures* cubes() const { return cubes_.get(); }
+  std::size_t triangle_count() const { return static_cast<std::size_t>(index_count_) / 3; }
   const std::vector<double>& unseen() const { return unseen_; }  ///< of automatic placement, after each cube
 
  private:

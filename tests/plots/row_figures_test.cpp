@@ -72,8 +72,10 @@ TEST(RowFigures, DrawTheirBlockAlone) {
   const std::vector<nlohmann::json> rows{row("iterations", 0, "secant", 0.2), row("iterations", 1, "secant", 0.1),
                                          row("iterations", 0, "linear", 0.3), row("iterations", 1, "linear", 0.2),
                                          row("cube_size", 1, "secant", 0.9)};
-  const RowFigure& figure = row_figures().front();
-  ASSERT_EQ(figure.info.name, "distance_impostors.iterations");
+  const auto found = std::find_if(row_figures().begin(), row_figures().end(),
+                                  [](const RowFigure& f) { return f.info.name == "distance_impostors.iterations"; });
+  ASSERT_NE(found, row_figures().end());
+  const RowFigure& figure = *found;
   RowChart chart = figure.chart;
   chart.series = {"scheme"};  // one scene here
   const Chart drawn = chart_of_rows(rows, chart);
