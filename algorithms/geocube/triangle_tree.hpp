@@ -72,7 +72,7 @@ class TriangleTree {
   double spread_ = 0;  ///< the largest coordinate
 };
 
-/// Distance from the origin to the nearest point of a triangle (Ericson 2005, Sec. 5.1.5, by Voronoi regions).
+/// Distance from the origin to the nearest point of a triangle.
 double distance_to_triangle(const std::array<glm::dvec3, 3>& corners);
 
 /// Distance from the cone's apex to the nearest point of the triangle in the cone; infinite when there is none, and
