@@ -41,7 +41,7 @@ Bounds opaque_bounds(const Scene& scene) {
 void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bool refractors, const char* technique) {
   objects_.clear();
   refractors_.clear();
-  middles_.clear();
+  extents_.clear();
   warnings_.clear();
   cost_ = {};
   cost_timer_.emplace(gl::Detail::frame);
@@ -53,7 +53,8 @@ void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bo
     object.cube = std::make_unique<ImpostorCube>(instance.name + " cube", settings);
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     const Bounds bounds = mesh_bounds(mesh);
-    middles_[instance.mesh] = 0.5F * (bounds.min + bounds.max);
+    if (!extents_.contains(instance.mesh))
+      extents_[instance.mesh] = {0.5F * (bounds.min + bounds.max), 0.5F * (bounds.max - bounds.min), closed(mesh)};
     if (!refractors || material_of(scene, object).kind != SurfaceKind::dielectric) continue;
     const auto [at, made] = refractors_.try_emplace(instance.mesh, mesh, settings.refractor_size, settings.layers);
     object.refractor = &at->second;
@@ -68,7 +69,21 @@ void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bo
 
 glm::vec3 DynamicObjects::center(const Scene& scene, const Object& object) const {
   const Instance& instance = instance_of(scene, object);
-  return glm::vec3(instance.to_world * glm::vec4(middles_.at(instance.mesh), 1.0F));
+  return glm::vec3(instance.to_world * glm::vec4(extents_.at(instance.mesh).middle, 1.0F));
+}
+
+void DynamicObjects::cull(const Scene& scene, const Object& object, const glm::vec3& eye) const {
+  const Instance& instance = instance_of(scene, object);
+  const Extent& extent = extents_.at(instance.mesh);
+  const glm::vec3 local(glm::inverse(instance.to_world) * glm::vec4(eye, 1.0F));
+  // A margin for the near plane, which may cut into an object that the eye is close to.
+  const glm::vec3 off = glm::abs(local - extent.middle) - 1.5F * extent.half;
+  if (extent.closed && (off.x > 0 || off.y > 0 || off.z > 0)) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(glm::determinant(glm::mat3(instance.to_world)) > 0 ? GL_BACK : GL_FRONT);
+  } else {
+    glDisable(GL_CULL_FACE);
+  }
 }
 
 glm::vec3 DynamicObjects::anchor(const Scene& scene, const Object& object, const MapSettings& settings) const {
@@ -130,11 +145,13 @@ void DynamicObjects::draw_mutual(const Scene& scene, const ForwardPass& forward,
           if (j == i) continue;
           const gl::Program& shade = program(material_of(scene, objects_[j]).kind, Use::cube, settings, lookup);
           bind(scene, objects_[j], lookup, shade);
+          cull(scene, objects_[j], cube.camera().center);
           draw_cube_object(forward, scene, objects_[j].instance, cube.camera(), face, shade);
         }
       });
     }
   }
+  glDisable(GL_CULL_FACE);
 }
 
 void DynamicObjects::draw(const Scene& scene, const ForwardPass& forward, const Camera& camera,
@@ -149,8 +166,10 @@ void DynamicObjects::draw(const Scene& scene, const ForwardPass& forward, const 
     const gl::Program& shade = program(material_of(scene, object).kind, Use::frame, settings, lookup);
     bind(scene, object, lookup, shade);
     shade.set("eye", camera.view.eye);
+    cull(scene, object, camera.view.eye);
     forward.draw_instance(scene, object.instance, world_to_clip, shade);
   }
+  glDisable(GL_CULL_FACE);
 }
 
 void DynamicObjects::draw_report(const Scene& scene, const ForwardPass& forward, const Camera& camera,

@@ -68,11 +68,17 @@ class DynamicObjects {
   enum class Use { frame, cube, report };
   const gl::Program& program(SurfaceKind, Use, const MapSettings&, const LookupSettings&);
   glm::vec3 center(const Scene&, const Object&) const;
+  /// Leaves out the far side of a closed object that the eye is not in: a software rasteriser would shade it.
+  void cull(const Scene&, const Object&, const glm::vec3& eye) const;
   glm::vec3 anchor(const Scene&, const Object&, const MapSettings&) const;
 
   std::vector<Object> objects_;
   std::map<int, RefractorMap> refractors_;  // by mesh
-  std::map<int, glm::vec3> middles_;        // of the meshes' bounding boxes
+  struct Extent {
+    glm::vec3 middle{0.0F}, half{0.0F};  // of the bounding box
+    bool closed = false;
+  };
+  std::map<int, Extent> extents_;  // by mesh, in its own space
   std::vector<std::string> warnings_;
   glm::vec3 proxy_min_{0.0F}, proxy_max_{0.0F};  // of the opaque objects, in the world
   CubeScene cube_scene_;

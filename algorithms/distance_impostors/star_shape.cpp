@@ -1,8 +1,12 @@
 #include "algorithms/distance_impostors/star_shape.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -74,6 +78,34 @@ glm::vec3 choose_center(const Mesh& mesh) {
     return shape.folded + shape.uncovered;
   };
   return glm::vec3(fault(centroid) < fault(middle) ? centroid : middle);
+}
+
+bool closed(const Mesh& mesh) {
+  // Vertices that share a place count as one, as on the seams of texture coordinates.
+  std::vector<unsigned> order(mesh.positions.size()), same(mesh.positions.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto key = [&](unsigned i) {
+    const glm::vec3 p = mesh.positions[i] + glm::vec3(0);  // −0 is 0
+    return std::array<float, 3>{p.x, p.y, p.z};
+  };
+  std::sort(order.begin(), order.end(), [&](unsigned a, unsigned b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    same[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
+  std::vector<std::pair<unsigned, unsigned>> edges, opposite;
+  double volume = 0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    const auto [a, b, c] = corners(mesh, t, glm::dvec3(0));
+    volume += glm::dot(a, glm::cross(b, c));
+    for (int i = 0; i < 3; ++i) {
+      const unsigned from = same[t[i]], to = same[t[(i + 1) % 3]];
+      if (from == to) continue;  // of a triangle without area
+      edges.emplace_back(from, to);
+      opposite.emplace_back(to, from);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::sort(opposite.begin(), opposite.end());
+  return volume > 0 && edges == opposite;
 }
 
 std::string describe(const std::string& name, const StarShape& shape) {

@@ -24,6 +24,10 @@ StarShape measure_star_shape(const Mesh&, const glm::dvec3& center);
 /// The middle of the bounding box or the centroid of the solid, whichever sees more of the surface.
 glm::vec3 choose_center(const Mesh&);
 
+/// True if every edge has a triangle on either side, and the triangles face outwards: from outside only fronts are
+/// seen.
+bool closed(const Mesh&);
+
 /// One line: "refractor 'skull' is not star-shaped: 12.1 % of its area …".
 std::string describe(const std::string& name, const StarShape&);
 

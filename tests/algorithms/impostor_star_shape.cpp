@@ -33,6 +33,19 @@ TEST(ImpostorStarShape, ATorusIsNot) {
   EXPECT_NE(text.find('%'), std::string::npos);
 }
 
+TEST(ImpostorStarShape, KnowsClosedSolids) {
+  for (const Mesh& mesh : {make_sphere(1, 16), make_box({1, 2, 3}), make_cone(1, 2, 16), make_torus(1, 0.3F, 16)})
+    EXPECT_TRUE(closed(mesh)) << mesh.name;
+  EXPECT_FALSE(closed(make_plane({1, 1}, 2)));
+  Mesh open = make_sphere(1, 16);
+  open.triangles.pop_back();
+  EXPECT_FALSE(closed(open));
+  Mesh inside_out = make_sphere(1, 16);
+  for (glm::uvec3& t : inside_out.triangles)
+    std::swap(t.y, t.z);
+  EXPECT_FALSE(closed(inside_out));
+}
+
 // A cone's centroid stands at a quarter of its height, and sees all of it; both choices do.
 TEST(ImpostorStarShape, ChoosesACentreInside) {
   const Mesh cone = make_cone(1, 2, 64);
