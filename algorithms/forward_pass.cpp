@@ -150,9 +150,10 @@ void ForwardPass::upload_lights(const Scene& scene) {
   auto cosine = [](float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); };
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    // The cosines of a narrow cone may round to one number, and from that to itself there is no smoothstep.
-    const float outer = cosine(light.outer_angle_deg);
-    const float inner = std::max(cosine(light.inner_angle_deg), std::nextafter(outer, 2.0F));
+    // The cosines of a narrow cone may round to one number, and from that to itself there is no smoothstep: a tenth of
+    // a degree lie between its edges.
+    const float inner = cosine(light.inner_angle_deg);
+    const float outer = std::min(cosine(light.outer_angle_deg), inner - 0x1p-19F);
     block.lights[i] = {glm::vec4(light.position, static_cast<float>(light.kind)), glm::vec4(light.direction, outer),
                        glm::vec4(light.intensity, inner)};
     uniform_lighting_ = uniform_lighting_ && light.kind == LightKind::directional;

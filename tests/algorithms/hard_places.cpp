@@ -26,6 +26,36 @@ TEST_P(HardPlaces, CameraInsideTheVolume) {
   }
 }
 
+// The eye in the plane of a face, in an edge's line, on a face and in a corner: the middle pixels' rays run along
+// faces, where the ray's way through the box is 0 / 0. On one side of them is fog, on the other none.
+TEST_P(HardPlaces, CameraInAFacesPlane) {
+  for (const glm::vec3& eye :
+       {glm::vec3(-1.0F, 0.0F, 4.0F), glm::vec3(-1.0F, -1.0F, 4.0F), glm::vec3(-1.0F, -1.0F, 1.0F),
+        glm::vec3(0.0F, 0.0F, 1.0F), glm::vec3(-1.0F, 0.0F, 0.0F)}) {
+    auto make = [&] {
+      Scene scene = aligned_fog();
+      scene.ambient = glm::vec3(1.0F);
+      scene.views = {view_at("face", eye, eye - glm::vec3(0.0F, 0.0F, 1.0F), 60.0F)};
+      return scene;
+    };
+    for (const Values& values : {c.least, c.fine}) {
+      Settings s = settings(c, values, "face");
+      s.width = 45;  // odd numbers: the middle pixel's ray is parallel to the z axis
+      const Image image = frame(make(), s);
+      ASSERT_EQ(not_finite(image), 0) << eye.x << ", " << eye.y << ", " << eye.z;
+      for (const float v : image.pixels) {
+        ASSERT_GE(v, 0.0F);
+        ASSERT_LE(v, 1.0F) << "brighter than its source";
+      }
+      if (eye.x == 0) continue;
+      EXPECT_EQ(image.at(21, 12)[0], 0.0F);
+      if (!c.slices || values == c.fine) {  // a single slice lies beside some of these rays
+        EXPECT_GT(image.at(23, 12)[0], 0.1F);
+      }
+    }
+  }
+}
+
 // A closed ball about the eye: all that is seen is its inner side through the fog before it.
 TEST_P(HardPlaces, CameraInsideAnOpaqueObject) {
   auto make = [](float radius, float near_m) {
