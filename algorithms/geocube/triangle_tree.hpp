@@ -12,7 +12,7 @@
 namespace pellucid::geocube {
 
 inline constexpr std::uint32_t kNoTriangle = ~0U;
-inline constexpr double kConeSlack = 0.01;
+inline constexpr double kConeSlack = 0.03;
 
 /// A circular cone without a base: the points whose direction from `apex` is within the half-angle of `axis`.
 struct Cone {
