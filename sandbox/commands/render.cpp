@@ -378,21 +378,19 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
   reference_app->add_option("--max-steps", truth->max_steps, "Most steps along a ray")
       ->check(CLI::Range(2, 1 << 20))
       ->capture_default_str();
-  CLI::Option* method =
-      reference_app
-          ->add_option("--method", truth->method,
-                       "exact: the medium is integrated; slices: the picture of very many slices that Imagire et al. "
-                       "2007 judge by, with its distance from the exact one")
-          ->check(CLI::IsMember({"exact", "slices"}))
+  reference_app
+      ->add_option("--method", truth->method,
+                   "exact: the medium is integrated; slices: the picture of very many slices that Imagire et al. "
+                   "2007 judge by, with its distance from the exact one")
+      ->check(CLI::IsMember({"exact", "slices"}))
+      ->capture_default_str();
+  const CLI::Option* slices = reference_app->add_option("--slices", truth->slices, "How many, of --method slices")
+                                  ->check(CLI::Range(1, 4096))
+                                  ->capture_default_str();
+  const CLI::Option* format =
+      reference_app->add_option("--format", truth->format, "half or single: what the slices blend into")
+          ->check(CLI::IsMember({"half", "single"}))
           ->capture_default_str();
-  reference_app->add_option("--slices", truth->slices, "How many, of --method slices")
-      ->check(CLI::Range(1, 4096))
-      ->needs(method)
-      ->capture_default_str();
-  reference_app->add_option("--format", truth->format, "half or single: what the slices blend into")
-      ->check(CLI::IsMember({"half", "single"}))
-      ->needs(method)
-      ->capture_default_str();
   reference_app
       ->add_option("--shadow-share", truth->shadow_share,
                    "Add a layer `shadow`: the pixels whose luminance the shadows in the medium lower by more than this "
@@ -404,7 +402,14 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
       "  pellucid reference fog_forest --method slices --slices 1024 -o slices.exr\n"
       "  pellucid reference teapot_room --surfaces raster --shadow-share 0.05 -o truth.exr\n"
       "  pellucid compare truth.exr hulls.exr --mask shadow");
-  commands.push_back({reference_app, [truth] { return reference(*truth); }});
+  commands.push_back({reference_app, [truth, slices, format] {
+                        for (const CLI::Option* option : {slices, format}) {
+                          if (option->count() > 0 && truth->method != "slices") {
+                            throw InputError(fmt::format("{} goes with --method slices", option->get_name()));
+                          }
+                        }
+                        return reference(*truth);
+                      }});
 }
 
 }  // namespace pellucid::sandbox
