@@ -33,6 +33,8 @@ struct PaperPictures {
   /// The picture whose FLIP map places the close-up, and how large a window is enlarged.
   std::string_view close_up_of;
   int close_up_width = 0, close_up_height = 0;
+  /// Where the window lies instead, from the top left corner: for a part that is not the worst.
+  int close_up_x = -1, close_up_y = -1;
 };
 
 struct Paper {

@@ -251,7 +251,9 @@ class Drawing {
       for (const char* metric : {"flip_mean", "flip_max", "rmse"})
         picture.metrics[metric] = result.at(metric);
       largest = std::max(largest, result.at("flip_max"));
-      if (picture.name == set_.close_up_of) {
+      if (set_.close_up_x >= 0) {
+        out_.close_up = {set_.close_up_x, set_.close_up_y, set_.close_up_width, set_.close_up_height};
+      } else if (picture.name == set_.close_up_of) {
         out_.close_up = plots::brightest_window(result.flip_map, set_.close_up_width, set_.close_up_height);
         out_.close_up_of = picture.label.empty() ? picture.name : picture.label;
       }

@@ -37,7 +37,7 @@ struct DrawnPictures {
   double step_error_max = 0, step_error_mean = 0, unconverged_share = 0;
   std::vector<DrawnPicture> pictures;  ///< in the order of the paper
   plots::Window close_up;
-  std::string close_up_of;  ///< label or name of the picture that placed it
+  std::string close_up_of;  ///< label or name of the picture that placed it; empty: it was chosen by hand
   int enlarged = 0;         ///< factor of the close-up
   double map_scale = 0;     ///< the FLIP that the brightest colour of the maps stands for
 };

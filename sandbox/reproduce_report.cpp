@@ -221,9 +221,12 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
                   set.map_scale)});
   section.blocks.emplace_back(std::move(maps));
   section.blocks.emplace_back(Heading{fmt::format("Close-up, ×{}", set.enlarged)});
-  section.blocks.emplace_back(
-      Paragraph{fmt::format("{}×{} pixels from ({}, {}): the window in which the error of {} is largest on average.",
-                            set.close_up.width, set.close_up.height, set.close_up.x, set.close_up.y, set.close_up_of)});
+  const std::string why =
+      set.close_up_of.empty()
+          ? "a part of medium and shadow before and behind surfaces"
+          : fmt::format("the window in which the error of {} is largest on average", set.close_up_of);
+  section.blocks.emplace_back(Paragraph{fmt::format("{}×{} pixels from ({}, {}): {}.", set.close_up.width,
+                                                    set.close_up.height, set.close_up.x, set.close_up.y, why)});
   section.blocks.emplace_back(std::move(close));
   section.blocks.emplace_back(Paragraph{
       "The same with more contrast: one straight line through the displayed values of all, by the reference's "
