@@ -209,6 +209,13 @@ Table sampling_hulls_equal(const TableInfo& info, const ChosenRows& chosen) {
   if (tally.all > 0) {
     table.notes.push_back(fmt::format("{} of {} ratios are above 0.5.",
                                       tally.above == 0 ? "None" : std::to_string(tally.above), tally.all));
+    if (tally.above > 0) {
+      table.notes.emplace_back(
+          "Why some are: points at the back of their steps are of first order, slices in the middle of second; local "
+          "coordinates of 8 bits have steps; and where the light itself changes fast, as in Fig. 11 near the lamp and "
+          "at "
+          "the edges of cone and shadow, both take equally long steps, and to end on the surface helps little.");
+    }
   }
   add_provenance(table, chosen);
   return table;
