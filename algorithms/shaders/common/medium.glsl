@@ -79,7 +79,7 @@ vec4 medium_visibility(MediumPath path, float t) {
   for (int k = 0; k < MEDIUM_LIGHTS; ++k) {
     if (casts_shadow(FIRST_LIGHT + k)) {
       float distance = sqrt(squared_distance(path.lights[k], t));
-      visible[k] = shadow_share(FIRST_LIGHT + k, place_at(path.lights[k], t), distance, shadow_range[k], shadow_settings);
+      visible[k] = shadow_share(FIRST_LIGHT + k, place_at(path.lights[k], t), distance, cone_range[k].zw, shadow_settings);
     }
   }
 #endif
@@ -102,7 +102,7 @@ vec3 medium_source(MediumPath path, float t, vec3 albedo, vec4 visible) {
       float per_m = 1.0 / sqrt(squared_distance(path.lights[k], t));
       share *= per_m * per_m;
       if (kLightKinds[k] == kSpot) {
-        float c = clamp(place_at(path.lights[k], t).z * per_m * cone[k].x + cone[k].y, 0.0, 1.0);
+        float c = clamp(place_at(path.lights[k], t).z * per_m * cone_range[k].x + cone_range[k].y, 0.0, 1.0);
         share *= c * c * (3.0 - 2.0 * c);
       }
     }

@@ -56,9 +56,9 @@ void main() {
     eye_place[k] = light_place(i, vec4(eye, 1.0));
     eye_from_light[k] = eye - light.position_kind.xyz;
     float scale = 1.0 / max(light.intensity_inner.w - light.direction_outer.w, 1e-6);
-    cone[k] = vec2(scale, -light.direction_outer.w * scale);
+    cone_range[k] = vec4(scale, -light.direction_outer.w * scale, 0.0, 0.0);
 #ifdef SHADOWS
-    shadow_range[k] = shadows[i].range.xy;
+    cone_range[k].zw = shadows[i].range.xy;
     shadow_settings = bleeding_variance.xyz;
 #endif
   }

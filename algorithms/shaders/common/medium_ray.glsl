@@ -33,9 +33,10 @@ flat MEDIUM_RAY vec4 scattered_light[MEDIUM_LIGHTS];  // intensity or irradiance
 MEDIUM_RAY vec3 place_from_eye[MEDIUM_LIGHTS];        // light_place() of the difference
 flat MEDIUM_RAY vec3 eye_place[MEDIUM_LIGHTS];
 flat MEDIUM_RAY vec3 eye_from_light[MEDIUM_LIGHTS];
-flat MEDIUM_RAY vec2 cone[MEDIUM_LIGHTS];  // scale and offset from the cosine to the range of smoothstep
+// xy: scale and offset from the cosine to the range of smoothstep; zw: Shadow::range. All of this for four lights must fit
+// into the 31 vectors that devices hand from stage to stage.
+flat MEDIUM_RAY vec4 cone_range[MEDIUM_LIGHTS];
 #ifdef SHADOWS
-flat MEDIUM_RAY vec2 shadow_range[MEDIUM_LIGHTS];
 flat MEDIUM_RAY vec3 shadow_settings;
 #endif
 #endif
