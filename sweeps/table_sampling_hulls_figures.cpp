@@ -185,7 +185,7 @@ class FigureTable {
         const auto value = by_slices(i, field);
         row.cells.push_back({value ? significant(*value, 3) : "", value});
       }
-      table_.rows.push_back(std::move(row));
+      if (any(row)) table_.rows.push_back(std::move(row));  // a preview does not judge every figure so
     }
   }
 
