@@ -221,6 +221,7 @@ class Geocube final : public Technique {
       program.set("absorption", material.absorption);
       program.set("diagonal", static_cast<float>(object.cubes()->set().diagonal));
       program.set("reflections", parameters_.reflections);
+      program.set("cut", parameters_.cut);
       program.set("show", static_cast<int>(parameters_.show));
       scissor(object, camera.projection() * camera.world_to_view() * to_world);
       glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -31,6 +31,7 @@ struct Parameters {
   int switches = 1;
   int refine = 2;
   int reflections = 1;
+  float cut = 1e-4F;
   Functions functions = Functions::evaluated;
   int table_size = 256;
   SearchStage stage = SearchStage::fragment;
@@ -107,6 +108,10 @@ struct Parameters {
                                .cite = "Sec. 2",
                                .doc = "internal reflections followed; the paper has 0 and 1. Light that needs more is "
                                       "left out"});
+    visit(PARAM(cut), {.range = {0, 1},
+                       .cite = "beyond the paper",
+                       .doc = "share of a pixel's light below which an internal reflection is not followed; about 0.05 "
+                              "leaves total reflection alone"});
     visit(PARAM(functions), {.symbol = "C*, S*",
                              .cite = "Sec. 4",
                              .doc = "evaluate the steps' functions, or look them up in a texture as the paper does",

@@ -16,6 +16,7 @@ uniform float object_scale;  // metres for a unit of the object's space
 uniform float ior;
 uniform vec3 absorption;  // 1/m
 uniform int reflections;
+uniform float cut;
 uniform int show;
 uniform float diagonal;
 
@@ -59,7 +60,7 @@ void main() {
   exit_normal = vec4(first.normal, float(first.cube));
 #else
   vec3 shown = vec3(0.0);
-  for (int k = 0; k <= reflections && h != vec3(0.0) && max(weight.x, max(weight.y, weight.z)) > 1e-4; ++k) {
+  for (int k = 0; k <= reflections && h != vec3(0.0) && (k == 0 || max(weight.x, max(weight.y, weight.z)) > cut); ++k) {
     Exit found = trace_inside(p, n, h, cube, start);
     weight *= transmitted(absorption, found.path * object_scale);
     n = found.normal;
