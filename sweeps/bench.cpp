@@ -15,6 +15,7 @@
 #include "algorithms/render_session.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
+#include "sweeps/bench_subjects.hpp"
 #include "sweeps/frame_clock.hpp"
 
 namespace pellucid::sweeps {
@@ -215,6 +216,39 @@ std::optional<BenchRatio> block_ratio(const std::vector<double>& a, const std::v
   return BenchRatio{quantile(ratios, 0.5), ci95};
 }
 
+void time_subjects(const std::array<FrameClock::Draw, 3>& subjects, int frames, BenchResult& result) {
+  std::array<std::vector<double>, 3> samples;
+  FrameClock clock;
+  for (const FrameClock::Draw& subject : subjects) {
+    WarmUp warm_up(kWarmUpFrames, kWarmUpSeconds / static_cast<double>(subjects.size()));
+    std::vector<double> times;
+    while (!warm_up.done()) {
+      clock.draw(subject, &times);
+      clock.drain();
+      warm_up.add(times.back());
+    }
+  }
+  const int blocks = (frames + BenchResult::kBlockFrames - 1) / BenchResult::kBlockFrames;
+  for (int block = 0; block < blocks; ++block) {
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      clock.draw(subjects[i], nullptr);  // the first finds the other's textures in the caches
+      for (int frame = 0; frame < BenchResult::kBlockFrames; ++frame)
+        clock.draw(subjects[i], &samples[i]);
+    }
+  }
+  clock.drain();
+
+  result.frames = blocks * BenchResult::kBlockFrames;
+  result.clock = gl::name(clock.clock());
+  result.method = summarise(samples[0]);
+  result.bare = summarise(samples[1]);
+  result.opaque = summarise(samples[2]);
+  const auto ratio = block_ratio(samples[0], samples[1], {}, BenchResult::kBlockFrames);
+  assert(ratio);  // every time is positive
+  result.ratio = *ratio;
+  result.own = block_ratio(samples[0], samples[1], samples[2], BenchResult::kBlockFrames);
+}
+
 BenchResult bench_sampling_hulls(const BenchRequest& request, nlohmann::json& recipe) {
   if (request.frames < 2 * BenchResult::kBlockFrames) {
     throw InputError(fmt::format("bench: frames = {} is below {}, the least that has an interval", request.frames,
@@ -255,36 +289,7 @@ BenchResult bench_sampling_hulls(const BenchRequest& request, nlohmann::json& re
   const std::array<FrameClock::Draw, 3> subjects{[&](gl::PassTimer& timer) { session.render(timer); },
                                                  [&](gl::PassTimer& timer) { bare.render(timer, true); },
                                                  [&](gl::PassTimer& timer) { bare.render(timer, false); }};
-  std::array<std::vector<double>, 3> samples;
-  FrameClock clock;
-  for (const FrameClock::Draw& subject : subjects) {
-    WarmUp warm_up(kWarmUpFrames, kWarmUpSeconds / static_cast<double>(subjects.size()));
-    std::vector<double> times;
-    while (!warm_up.done()) {
-      clock.draw(subject, &times);
-      clock.drain();
-      warm_up.add(times.back());
-    }
-  }
-  const int blocks = (request.frames + BenchResult::kBlockFrames - 1) / BenchResult::kBlockFrames;
-  for (int block = 0; block < blocks; ++block) {
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
-      clock.draw(subjects[i], nullptr);  // the first finds the other's textures in the caches
-      for (int frame = 0; frame < BenchResult::kBlockFrames; ++frame)
-        clock.draw(subjects[i], &samples[i]);
-    }
-  }
-  clock.drain();
-
-  result.frames = blocks * BenchResult::kBlockFrames;
-  result.clock = gl::name(clock.clock());
-  result.method = summarise(samples[0]);
-  result.bare = summarise(samples[1]);
-  result.opaque = summarise(samples[2]);
-  const auto ratio = block_ratio(samples[0], samples[1], {}, BenchResult::kBlockFrames);
-  assert(ratio);  // every time is positive
-  result.ratio = *ratio;
-  result.own = block_ratio(samples[0], samples[1], samples[2], BenchResult::kBlockFrames);
+  time_subjects(subjects, request.frames, result);
   return result;
 }
 

@@ -49,6 +49,11 @@ struct BenchResult {
 /// current GL context. `recipe` receives what was drawn: scene, view, size and every parameter with its value.
 BenchResult bench_sampling_hulls(const BenchRequest&, nlohmann::json& recipe);
 
+/// The same for distance_impostors: the frame without refreshes of the maps, and the bare shader makes as many fetches
+/// as a search at most. `blends_per_pixel` is the share of pixels that show an object, `fetches_per_blend` of a mirror
+/// or metal.
+BenchResult bench_distance_impostors(const BenchRequest&, nlohmann::json& recipe);
+
 /// The hulls against VTK's GPU ray caster on the same volume and view, alone in a black world and white where it is
 /// opaque, so that nothing but the medium is drawn. VTK's sample distance is the longest at which its error against the
 /// reference is no larger than the hulls', or where there is none, that of its least error.

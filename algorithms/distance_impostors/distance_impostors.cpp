@@ -10,40 +10,20 @@ class DistanceImpostors final : public Technique {
  public:
   ParameterRef parameters() override { return bind_parameters(parameters_); }
   void prepare(const Scene& scene) override {
-    layers_ = layers_of(parameters_.cube_pass);
-    localized_.prepare(scene, maps(), lookup(), caustics());
+    maps_ = map_settings(parameters_);
+    localized_.prepare(scene, maps_, lookup_settings(parameters_), caustics());
   }
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
-    localized_.render(scene, camera, forward, target, timer, maps(), lookup());
+    // What the maps are made of changes with prepare() alone; when they are drawn again, at any time.
+    MapSettings maps = map_settings(parameters_);
+    maps.layers = maps_.layers;
+    localized_.render(scene, camera, forward, target, timer, maps, lookup_settings(parameters_));
   }
   void native_errors(nlohmann::json& out) const override { localized_.native_errors(out); }
   std::string reload_shaders() override { return localized_.reload_shaders(); }
 
  private:
-  MapSettings maps() const {
-    const Parameters& p = parameters_;
-    return {.cube_size = p.cube_size,
-            .format = p.cube_format,
-            .store = p.distance,
-            .layers = layers_,
-            .anchor = p.reference_point,
-            .anchor_point = {p.reference_x_m, p.reference_y_m, p.reference_z_m},
-            .refresh = p.refresh,
-            .refresh_frames = p.refresh_frames,
-            .refresh_ms = p.refresh_ms,
-            .refresh_distance_m = p.refresh_distance_m,
-            .mutual = p.mutual,
-            .refractor_size = p.refractor_size};
-  }
-  LookupSettings lookup() const {
-    const Parameters& p = parameters_;
-    return {.parallax = Parallax::impostor,
-            .search = {p.iterations, p.scheme, p.linear_steps},
-            .bounces = p.bounces,
-            .internal = p.internal_reflections,
-            .proxy_radius_m = 0};
-  }
   CausticSettings caustics() const {
     const Parameters& p = parameters_;
     return {.enabled = p.caustics,
@@ -54,11 +34,35 @@ class DistanceImpostors final : public Technique {
   }
 
   Parameters parameters_;
-  CubeLayers layers_ = CubeLayers::geometry;
+  MapSettings maps_;
   Localized localized_{"distance_impostors"};
 };
 
 }  // namespace
+
+MapSettings map_settings(const Parameters& p) {
+  return {.cube_size = p.cube_size,
+          .format = p.cube_format,
+          .store = p.distance,
+          .layers = layers_of(p.cube_pass),
+          .anchor = p.reference_point,
+          .anchor_point = {p.reference_x_m, p.reference_y_m, p.reference_z_m},
+          .refresh = p.refresh,
+          .refresh_frames = p.refresh_frames,
+          .refresh_ms = p.refresh_ms,
+          .refresh_distance_m = p.refresh_distance_m,
+          .mutual = p.mutual,
+          .refractor_size = p.refractor_size};
+}
+
+LookupSettings lookup_settings(const Parameters& p) {
+  return {.parallax = Parallax::impostor,
+          .search = {p.iterations, p.scheme, p.linear_steps},
+          .bare = false,
+          .bounces = p.bounces,
+          .internal = p.internal_reflections,
+          .proxy_radius_m = 0};
+}
 
 const ParameterTable& table() {
   return parameter_table<Parameters>();

@@ -138,6 +138,10 @@ struct Parameters {
 };
 static_assert(well_formed<Parameters>());
 
+/// What the parameters mean. A context must be current.
+MapSettings map_settings(const Parameters&);
+LookupSettings lookup_settings(const Parameters&);
+
 const ParameterTable& table();
 std::unique_ptr<Technique> make();
 

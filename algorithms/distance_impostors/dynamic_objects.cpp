@@ -193,6 +193,7 @@ gl::Defines DynamicObjects::defines(SurfaceKind kind, const LookupSettings& look
     defines.emplace_back("ITERATIONS", fmt::to_string(lookup.search.iterations));
     defines.emplace_back("SCHEME", fmt::to_string(static_cast<int>(lookup.search.scheme)));
     defines.emplace_back("LINEAR_STEPS", fmt::to_string(lookup.search.steps));
+    if (lookup.bare) defines.emplace_back("BARE", fmt::to_string(fetches(lookup.search)));
   }
   if (kind == SurfaceKind::dielectric)
     defines.emplace_back("INTERNAL", fmt::to_string(refractor ? lookup.internal : 0));

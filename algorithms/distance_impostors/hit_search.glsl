@@ -8,7 +8,18 @@
 // The least denominator of Eq. 6.
 const float kLeastDifference = 1e-7;
 
-#if SCHEME == 2
+#ifdef BARE
+// As many fetches as the search makes, nearby, and nothing else.
+vec3 find_hit(vec3 x, vec3 R, IMPOSTOR_MAP map) {
+  float sum = 0.0;
+  vec3 direction = R;
+  for (int i = 0; i < BARE; ++i) {
+    sum += IMPOSTOR_DISTANCE(map, direction);
+    direction += 0.1 * x;
+  }
+  return direction + 1e-9 * sum * x;
+}
+#elif SCHEME == 2
 bool beyond_surface(IMPOSTOR_MAP map, vec3 from, vec3 across, float height, float theta, float phi) {
   vec3 direction = cos(phi) * from + sin(phi) * across;
   return height >= IMPOSTOR_DISTANCE(map, direction) * sin(theta - phi);

@@ -21,6 +21,13 @@ struct HitSearch {
   int steps = 64;  ///< of the linear scheme
 };
 
+/// Distances that a search fetches at most: r, that of p, and one for each l; of the linear scheme one a step, and one
+/// a bisection.
+inline int fetches(const HitSearch& search) {
+  if (search.scheme == Scheme::linear) return search.steps + std::max(search.iterations, 0);
+  return search.iterations < 0 ? 1 : 2 + search.iterations;
+}
+
 /// The least denominator of Eq. 6: two points that are equally far off determine no line.
 inline constexpr double kLeastDifference = 1e-7;
 

@@ -48,6 +48,7 @@ enum class Parallax {
 struct LookupSettings {
   Parallax parallax = Parallax::impostor;
   HitSearch search;
+  bool bare = false;         ///< the fetches of the search and nothing else: what `pellucid bench` compares with
   int bounces = 2;           ///< refractions
   int internal = 2;          ///< reflections inside, after which all that is left leaves
   float proxy_radius_m = 0;  ///< 0: the mean half side of the box

@@ -39,6 +39,7 @@ class EnvironmentMap final : public Technique {
   distance_impostors::LookupSettings lookup() const {
     return {.parallax = static_cast<distance_impostors::Parallax>(parameters_.parallax),
             .search = {},
+            .bare = false,
             .bounces = 1,
             .internal = 0,
             .proxy_radius_m = parameters_.proxy_radius_m};

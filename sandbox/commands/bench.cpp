@@ -25,7 +25,7 @@ using sweeps::BenchResult;
 using sweeps::TimingSummary;
 
 struct Options {
-  std::string technique, scene = "fog_forest", view, size = "720x540";
+  std::string technique, scene, view, size = "720x540";
   std::vector<std::string> settings;
   int frames = sweeps::BenchRequest{}.frames;
   std::optional<int> device;
@@ -67,7 +67,7 @@ void print_ratio(const char* what, const std::optional<BenchRatio>& ratio) {
   if (ratio) {
     fmt::print("  {:<34} {:9.3f}     [{:.3f}, {:.3f}]\n", what, ratio->median, ratio->ci95.low, ratio->ci95.high);
   } else {
-    fmt::print("  {:<34} {:>9}     the hulls take no time that stands out of the noise\n", what, "-");
+    fmt::print("  {:<34} {:>9}     the shaders take no time that stands out of the noise\n", what, "-");
   }
 }
 
@@ -96,16 +96,21 @@ void print_vtk(const AgainstVtk& against) {
 
 int bench(const Options& options) {
   const Size size = parse_size(options.size);
-  if (const auto& info = find_technique(options.technique); info.name != "sampling_hulls") {
-    throw InputError(fmt::format("bench: there is no bare shader of {}, only of sampling_hulls", info.name));
+  const TechniqueInfo& info = find_technique(options.technique);
+  const bool hulls = info.name == "sampling_hulls";
+  if (!hulls && info.name != "distance_impostors") {
+    throw InputError(
+        fmt::format("bench: there is no bare shader of {}, only of sampling_hulls and distance_impostors", info.name));
   }
-  sweeps::BenchRequest request{options.scene, options.view, size.width, size.height, {}, options.frames};
+  const std::string scene = !options.scene.empty() ? options.scene : hulls ? "fog_forest" : "mirror_room";
+  sweeps::BenchRequest request{scene, options.view, size.width, size.height, {}, options.frames};
   for (const std::string& setting : options.settings)
     request.settings.push_back(parse_assignment(setting));
   gl::Context context({.device = options.device});
   nlohmann::json recipe;
-  const BenchResult result = sweeps::bench_sampling_hulls(request, recipe);
-  const AgainstVtk vtk = against_vtk(options, request, context);
+  const BenchResult result =
+      hulls ? sweeps::bench_sampling_hulls(request, recipe) : sweeps::bench_distance_impostors(request, recipe);
+  const AgainstVtk vtk = hulls ? against_vtk(options, request, context) : AgainstVtk{std::nullopt, "it draws volumes"};
 
   if (options.json) {
     ordered_json out = recipe;
@@ -131,9 +136,11 @@ int bench(const Options& options) {
     return kDone;
   }
   const nlohmann::json& parameters = recipe.at("parameters");
-  fmt::print("{} of {}, view {}, {} hulls of {} samples, {}x{}; medians of {} frames [95 % interval]\n",
-             options.technique, options.scene, recipe.at("view").get<std::string>(), parameters.at("hulls").get<int>(),
-             parameters.at("samples").get<int>(), size.width, size.height, result.frames);
+  const std::string counts = hulls ? fmt::format("{} hulls of {} samples", parameters.at("hulls").get<int>(),
+                                                 parameters.at("samples").get<int>())
+                                   : fmt::format("NITER {}", parameters.at("iterations").get<int>());
+  fmt::print("{} of {}, view {}, {}, {}x{}; medians of {} frames [95 % interval]\n", options.technique, scene,
+             recipe.at("view").get<std::string>(), counts, size.width, size.height, result.frames);
   print_time("frame", result.method);
   print_time("bare shader's frame", result.bare);
   print_time("opaque passes of both, alone", result.opaque);
@@ -142,7 +149,7 @@ int bench(const Options& options) {
   fmt::print("  {:<34} {:9.3f}\n", "blends per pixel", result.blends_per_pixel);
   fmt::print("  {:<34} {:9.3f}     {} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
              result.fetches_per_blend);
-  print_vtk(vtk);
+  if (hulls) print_vtk(vtk);
   fmt::print("on {}, clock {}\n", context.device().renderer, result.clock);
   return kDone;
 }
@@ -153,9 +160,9 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand(
       "bench", "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK");
-  app->add_option("technique", options->technique, "The technique; sampling_hulls has a bare shader")->required();
-  app->add_option("--scene", options->scene, "A scene's name (pellucid list scenes) or a .toml file")
-      ->capture_default_str();
+  app->add_option("technique", options->technique, "The technique: sampling_hulls or distance_impostors")->required();
+  app->add_option("--scene", options->scene,
+                  "A scene's name (pellucid list scenes) or a .toml file; fog_forest or mirror_room without it");
   app->add_option("-s,--set", options->settings,
                   "name=value of a parameter, scene.name for the scene's own; repeatable")
       ->allow_extra_args(false);
@@ -170,6 +177,7 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
   app->add_flag("--json", options->json, "Print the measurement as JSON");
   app->footer(
       "Example: pellucid bench sampling_hulls -s hulls=4 -s samples=8\n"
+      "Example: pellucid bench distance_impostors -s iterations=2 --size 700x700\n"
       "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
       "ratio\n"
       "is the median over the blocks, so that it may differ a little from that of the medians. Times of different\n"

@@ -107,6 +107,20 @@ TEST_F(Bench, PrintsTheSameForPeople) {
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words;
 }
 
+TEST_F(Bench, TimesDistanceImpostors) {
+  const Outcome outcome = pellucid({"bench", "distance_impostors", "--size", "64x48", "--frames", "8", "-s",
+                                    "iterations=3", "-s", "cube_size=64", "--json"});
+  ASSERT_TRUE(succeeded(outcome));
+  const json row = json::parse(outcome.out);
+  expect_interval(row.at("ratio"), "median", "ci95_low", "ci95_high");
+  EXPECT_EQ(row.at("scene"), "mirror_room");
+  EXPECT_EQ(row.at("fetches_per_blend"), 6);  // r, p, three of l, and the radiance
+  EXPECT_GT(row.at("blends_per_pixel").get<double>(), 0.01);
+  EXPECT_LT(row.at("blends_per_pixel").get<double>(), 0.2);
+  const Outcome shadows = pellucid({"bench", "distance_impostors", "-s", "shadow.size=64"});
+  EXPECT_TRUE(refused(shadows, 2, {"shadow.size"}));
+}
+
 TEST_F(Bench, RefusesWhatItCannotTime) {
   EXPECT_TRUE(refused(pellucid({"bench", "sampling_hull"}), 2, {"sampling_hull", "did you mean 'sampling_hulls'"}));
   EXPECT_TRUE(refused(pellucid({"bench", "volume_slices"}), 2, {"volume_slices", "sampling_hulls"}));

@@ -1,0 +1,120 @@
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/distance_impostors/distance_impostors.hpp"
+#include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include "algorithms/forward_pass.hpp"
+#include "algorithms/render_session.hpp"
+#include "gl/context.hpp"
+#include "gl/error.hpp"
+#include "sweeps/bench_subjects.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+using namespace distance_impostors;
+
+constexpr const char* kName = "distance_impostors";
+
+/// Opaque objects, and over them the optical ones with maps that were drawn once.
+class ImpostorFrame {
+ public:
+  ImpostorFrame(const Scene& scene, const Camera& camera, const MapSettings& maps, LookupSettings lookup, bool bare,
+                gl::Format format)
+      : scene_(scene), camera_(camera), maps_(maps), lookup_(lookup), forward_(scene) {
+    lookup_.bare = bare;
+    color_ = gl::Texture::make_2d("bench colour", format, camera.width, camera.height);
+    depth_ = gl::Texture::make_2d("bench depth", gl::Format::depth32f, camera.width, camera.height);
+    framebuffer_ = gl::Framebuffer("bench", {&color_}, &depth_);
+    forward_.update_shadows(scene, shadow_);
+    objects_.prepare(scene, maps_, lookup_.bounces > 1, kName);
+    const std::vector<std::size_t> due = objects_.due(scene, maps_);
+    objects_.draw_maps(scene, forward_, maps_, lookup_, due);
+    objects_.draw_mutual(scene, forward_, maps_, lookup_, due);
+  }
+
+  void render(gl::PassTimer& timer, bool with_objects) {
+    timer.begin_frame();
+    if (forward_.shadowed()) forward_.update_shadows(scene_, shadow_);
+    framebuffer_.bind();
+    forward_.draw_shaded(camera_, false);
+    if (with_objects) objects_.draw(scene_, forward_, camera_, maps_, lookup_);
+    timer.end_frame();
+    gl::check("bench", kName);
+  }
+
+  double count_pixels() {
+    gl::PassTimer untimed;
+    render(untimed, false);
+    GLuint query = 0;
+    glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
+    glBeginQuery(GL_SAMPLES_PASSED, query);
+    objects_.draw(scene_, forward_, camera_, maps_, lookup_);
+    glEndQuery(GL_SAMPLES_PASSED);
+    GLuint64 passed = 0;
+    glGetQueryObjectui64v(query, GL_QUERY_RESULT, &passed);
+    glDeleteQueries(1, &query);
+    return static_cast<double>(passed);
+  }
+
+ private:
+  const Scene& scene_;
+  Camera camera_;
+  MapSettings maps_;
+  LookupSettings lookup_;
+  ShadowSettings shadow_;
+  ForwardPass forward_;
+  DynamicObjects objects_;
+  gl::Texture color_, depth_;
+  gl::Framebuffer framebuffer_;
+};
+
+}  // namespace
+
+BenchResult bench_distance_impostors(const BenchRequest& request, nlohmann::json& recipe) {
+  if (request.frames < 2 * BenchResult::kBlockFrames) {
+    throw InputError(fmt::format("bench: frames = {} is below {}, the least that has an interval", request.frames,
+                                 2 * BenchResult::kBlockFrames));
+  }
+  // The session checks scene, view and settings, and says which values they lead to.
+  RenderSession session(load_scene(request.scene), kName, request.view, request.width, request.height);
+  Parameters parameters;
+  const ParameterRef table = bind_parameters(parameters);
+  for (const auto& [name, value] : request.settings) {
+    session.assign_text(name, value);
+    if (const ParameterInfo* info = table.table->find(name))
+      table.assign(name, parse_value(*info, value, kName), kName);
+    else if (!name.starts_with("scene.") && !name.starts_with("frame."))
+      throw InputError(fmt::format("bench: {} of {} is timed with the default of '{}'", kName, request.scene, name));
+  }
+  session.prepare();
+  gl::PassTimer untimed;
+  session.render(untimed);
+  const Scene& scene = session.scene();
+  const Camera& camera = session.camera();
+  recipe = {{"technique", kName},
+            {"scene", request.scene},
+            {"view", camera.view.name},
+            {"width", request.width},
+            {"height", request.height},
+            {"parameters", session.parameters()},
+            {"scene_hash", scene.content_hash()}};
+
+  const MapSettings maps = map_settings(parameters);
+  const LookupSettings lookup = lookup_settings(parameters);
+  const gl::Format format = session.color().format();
+  ImpostorFrame method(scene, camera, maps, lookup, false, format), bare(scene, camera, maps, lookup, true, format);
+  BenchResult result;
+  result.blends_per_pixel = method.count_pixels() / (static_cast<double>(request.width) * request.height);
+  result.fetches_per_blend = fetches(lookup.search) + 1;
+  result.fetches_per_pixel = result.blends_per_pixel * result.fetches_per_blend;
+  time_subjects({[&](gl::PassTimer& timer) { method.render(timer, true); },
+                 [&](gl::PassTimer& timer) { bare.render(timer, true); },
+                 [&](gl::PassTimer& timer) { bare.render(timer, false); }},
+                request.frames, result);
+  return result;
+}
+
+}  // namespace pellucid::sweeps
