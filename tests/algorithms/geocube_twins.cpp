@@ -10,6 +10,7 @@
 #include "algorithms/geocube/layers.hpp"
 #include "algorithms/geocube/placement.hpp"
 #include "algorithms/geocube/search.hpp"
+#include "gl/error.hpp"
 #include "gl/program.hpp"
 #include "tests/algorithms/geocube_solids.hpp"
 #include "tests/algorithms/rendered.hpp"
@@ -147,6 +148,20 @@ TEST(GeocubeTwins, TheSearchInLayers) {
                                    return find_exit_in_layers(maps, p, n, h, cube, search);
                                  });
   EXPECT_GT(alike, 0.97);
+}
+
+TEST(GeocubeTextures, MoreThanTheDeviceHoldsIsRefused) {
+  test::use_context();
+  CubeSet set;
+  set.options.resolution = 512;
+  set.options.layers = 8;
+  set.cubes.resize(4000);  // 2.3 TiB; nothing is allocated for them
+  try {
+    const CubeTextures textures("huge", set);
+    ADD_FAILURE() << "it was taken";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("MiB of textures; the device has"), std::string::npos) << e.what();
+  }
 }
 
 TEST(GeocubeLayers, OneCubeOfManyLayersDoesAsWellAsSeveralCubes) {
