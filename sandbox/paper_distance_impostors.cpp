@@ -4,8 +4,9 @@
 namespace pellucid::sandbox {
 namespace {
 
-constexpr Words kSpecs[] = {"distance_impostors_figures", "distance_impostors_curves"};
-constexpr Words kPreviews[] = {"distance_impostors_figures_preview", "distance_impostors_curves_preview"};
+constexpr Words kSpecs[] = {"distance_impostors_figures", "distance_impostors_scenes", "distance_impostors_curves"};
+constexpr Words kPreviews[] = {"distance_impostors_figures_preview", "distance_impostors_scenes_preview",
+                               "distance_impostors_curves_preview"};
 
 // The reference point stays in the middle of the room and its map is drawn once, as in the paper's test application.
 constexpr Words kClassical[] = {"reference_point=scene", "refresh=once"};
@@ -61,6 +62,41 @@ constexpr PaperPictures fig5(Words name, Words title, std::span<const Words> set
           .close_up_height = 140};
 }
 
+constexpr Words kCaustics[] = {"caustics=true"};
+constexpr Words kNoCaustics[] = {"caustics=false"};
+constexpr Words kOnce[] = {"refresh=once"};
+constexpr Words kGame[] = {"cube_size=256", "refresh=once"};
+constexpr PaperPicture kFig10[] = {
+    {"caustics", "", "distance_impostors", kCaustics, "Photon hits of 64×64 texels, splatted into light maps."},
+    {"no_caustics", "", "distance_impostors", kNoCaustics, "Not in the paper: the shadow alone."},
+};
+constexpr PaperPicture kFig12[] = {
+    {"impostors", "", "distance_impostors", kOnce, "With distance impostors."},
+    {"classical", "", "environment_map", kOnce, "Not in the paper: classical environment mapping."},
+};
+constexpr PaperPicture kGamePictures[] = {
+    {"impostors", "", "distance_impostors", kGame, "The game's cubes of 256 texels."},
+    {"classical", "", "environment_map", kGame, "Not in the paper: classical environment mapping."},
+};
+
+constexpr PaperPictures scene(Words name, Words title, Words file, Words preview, Words view, bool caustics,
+                              std::span<const PaperPicture> pictures) {
+  return {.name = name,
+          .title = title,
+          .scene = file,
+          .preview_scene = preview,
+          .view = view,
+          .settings = {},
+          .width = 700,
+          .height = 700,
+          .surfaces = "rays",
+          .caustics = caustics,
+          .pictures = pictures,
+          .close_up_of = pictures[0].name,
+          .close_up_width = 160,
+          .close_up_height = 160};
+}
+
 constexpr PaperPictures kPictures[] = {
     fig5("fig5_middle", "Fig. 5: a mirror ball before the middle of the back wall", kMiddle),
     fig5("fig5_off_centre", "Fig. 5: off-centre", kOffCentre),
@@ -91,6 +127,14 @@ constexpr PaperPictures kPictures[] = {
      .close_up_of = "double_niter_0",
      .close_up_width = 160,
      .close_up_height = 160},
+    scene("fig10", "Fig. 10: the caustic of a glass ball", "glass_caustic", "", "front", true, kFig10),
+    scene("fig11", "Fig. 11: the caustic seen through the ball", "glass_caustic", "", "through", true, kFig10),
+    scene("fig12_skull", "Fig. 12: a glass skull", "glass_skull", "glass_skull_procedural", "", false, kFig12),
+    scene("fig12_teapot", "Fig. 12: an aluminium teapot", "metal_teapot", "", "", false, kFig12),
+    scene("fig13", "Fig. 13: a reflective box among stones", "mirror_box_stones", "", "", false, kGamePictures),
+    scene("fig14", "Fig. 14: a statue in reflective armour", "armour_hall", "armour_hall_procedural", "", false,
+          kGamePictures),
+    scene("fig15", "Fig. 15: reflective and refractive balls", "spheres_hall", "", "", false, kGamePictures),
 };
 
 }  // namespace

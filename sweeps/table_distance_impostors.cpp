@@ -149,7 +149,80 @@ Table figure_table(int figure_number, const TableInfo& info, const ChosenRows& a
   return table;
 }
 
+/// A frame rate that the paper names, and the block that measures ours.
+struct PublishedRate {
+  const char* figure;
+  const char* what;
+  const char* block;
+  std::optional<double> low, high;  ///< the same where one number is given
+};
+const std::vector<PublishedRate>& rates() {
+  static const std::vector<PublishedRate> all{
+      {"Fig. 10", "caustic", "fig10", 182, 182},     {"Fig. 11", "through the ball", "fig11", {}, {}},
+      {"Fig. 12", "skull", "fig12_skull", 130, 130}, {"Fig. 12", "teapot", "fig12_teapot", 440, 440},
+      {"Fig. 13", "box", "fig13", 160, 160},         {"Fig. 14", "armour", "fig14", 105, 130},
+      {"Fig. 15", "balls", "fig15", 85, 105},
+  };
+  return all;
+}
+
 }  // namespace
+
+TableInfo distance_impostors_rates_info() {
+  return {.name = "distance_impostors.rates",
+          .title = "Frame rates that Figs. 10 to 15 name",
+          .source = "Szirmay-Kalos et al. 2005, Figs. 10 to 15",
+          .spec = "distance_impostors_scenes"};
+}
+
+Table distance_impostors_rates(const TableInfo& info, const ChosenRows& chosen) {
+  Table table{.info = info, .rows = {}, .heading_rows = 2, .records = {}, .notes = {}, .sweep = chosen.sweep};
+  TableRow figures{"Figure", {}, TableRow::all}, scenes{"Scene", {}, TableRow::all},
+      paper{"fps (paper)", {}, TableRow::all};
+  std::vector<Place> places;
+  for (const PublishedRate& rate : rates()) {
+    figures.cells.push_back({rate.figure, std::nullopt});
+    scenes.cells.push_back({rate.what, std::nullopt});
+    const bool range = rate.low != rate.high;
+    paper.cells.push_back({!rate.low ? ""
+                           : range   ? fmt::format("{:g} to {:g}", *rate.low, *rate.high)
+                                     : fmt::format("{:g}", *rate.low),
+                           range ? std::nullopt : rate.low});
+    places.push_back(make_place(fmt::format("{}, {}", rate.figure, rate.what), find_row_of(chosen, rate.block, {})));
+  }
+  table.rows = {std::move(figures), std::move(scenes), std::move(paper), fps_row("fps (ours)", places)};
+  for (TableRow& row : interval_rows(places))
+    table.rows.push_back(std::move(row));
+  for (const auto& [label, field] : {std::pair{"FLIP", "flip_mean"}, std::pair{"FLIP on the objects", "flip_mean_mask"},
+                                     std::pair{"caustic energy over the photon tracer's", "caustic_energy_ratio"}}) {
+    table.rows.push_back(our_row(label, places, 3, [&](const json& row) { return number(row, field); }));
+  }
+  table.rows.push_back(outcome_row(places));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const PublishedRate& rate = rates()[i];
+    TableRecord record{
+        {"figure", std::string(rate.figure)}, {"object", std::string(rate.what)},
+        {"quantity", std::string("fps")},     {"paper", rate.low == rate.high ? real_value(rate.low) : std::nullopt},
+        {"paper_low", real_value(rate.low)},  {"paper_high", real_value(rate.high)},
+        {"ours", real_value(fps(places[i]))}};
+    for (const char* field :
+         {"frame_ms_median", "frame_ms_mean", "flip_mean", "flip_mean_mask", "rmse", "caustic_energy_ratio", "cube_ms"})
+      record.emplace_back(field, real_field(places[i], field));
+    add_origin(record, places[i], chosen.sweep);
+    table.records.push_back(std::move(record));
+  }
+  table.notes.push_back(fmt::format(
+      "Paper: {}: NV6800GT, P4 3 GHz; the size of these frames is not named, ours is that of Fig. 5.", info.source));
+  for (std::string& note : provenance_notes(info, chosen))
+    table.notes.push_back(std::move(note));
+  if (!chosen.rows.empty()) {
+    table.notes.emplace_back(
+        "FLIP (mean) is against the ray-traced scene, with photon-traced caustics in Figs. 10 and 11.");
+    for (std::string& note : outcome_notes(places))
+      table.notes.push_back(std::move(note));
+  }
+  return table;
+}
 
 TableInfo distance_impostors_figure_info(int n) {
   return {.name = fmt::format("distance_impostors.fig{}", n),

@@ -69,6 +69,9 @@ TableInfo distance_impostors_figure_info(int n);
 Table distance_impostors_fig5(const TableInfo&, const ChosenRows&);
 Table distance_impostors_fig6(const TableInfo&, const ChosenRows&);
 Table distance_impostors_fig7(const TableInfo&, const ChosenRows&);
+/// The frame rates that its Figs. 10 to 15 name, beside ours.
+TableInfo distance_impostors_rates_info();
+Table distance_impostors_rates(const TableInfo&, const ChosenRows&);
 
 /// Published numbers of Chan and Wang 2005, Table 2, beside ours, and the errors of their figures.
 TableInfo geocube_table2_info();

@@ -31,6 +31,7 @@ const std::vector<Entry>& entries() {
                                       {distance_impostors_figure_info(5), &distance_impostors_fig5},
                                       {distance_impostors_figure_info(6), &distance_impostors_fig6},
                                       {distance_impostors_figure_info(7), &distance_impostors_fig7},
+                                      {distance_impostors_rates_info(), &distance_impostors_rates},
                                       {geocube_table2_info(), &geocube_table2},
                                       {geocube_fig16_info(), &geocube_fig16}};
   return all;
