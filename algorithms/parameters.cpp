@@ -1,6 +1,7 @@
 #include "algorithms/parameters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <charconv>
 #include <cmath>
@@ -193,6 +194,14 @@ ParameterInfo make_info(std::string_view parameter, ValueType type, const Meta& 
   }
   info.default_value = make_value(info, default_number);
   return info;
+}
+
+double nearest_decimal(float value) {
+  std::array<char, 32> digits{};
+  const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  double decimal = 0;
+  std::from_chars(digits.data(), written.ptr, decimal);
+  return decimal;
 }
 
 Value make_value(const ParameterInfo& info, double number) {

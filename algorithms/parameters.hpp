@@ -127,6 +127,19 @@ constexpr double as_number(const M& value) {
   return static_cast<double>(value);
 }
 
+/// The shortest decimal that is this float, as a double: 0.1F gives 0.1 and not 0.10000000149. So a float that was
+/// assigned from a text or a spec reads back as what was written there.
+double nearest_decimal(float value);
+
+template <class M>
+double shown_number(const M& value) {
+  if constexpr (std::is_same_v<M, float>) {
+    return nearest_decimal(value);
+  } else {
+    return as_number(value);
+  }
+}
+
 ParameterInfo make_info(std::string_view name, ValueType, const Meta&, double default_number);
 Value make_value(const ParameterInfo&, double number);
 double to_number(const ParameterInfo&, const Value&);
@@ -178,7 +191,7 @@ struct InfoVisitor {
   std::vector<ParameterInfo> infos;
   template <class M>
   void operator()(std::string_view parameter, const M& value, const Meta& meta) {
-    infos.push_back(make_info(parameter, value_type<M>(), meta, as_number(value)));
+    infos.push_back(make_info(parameter, value_type<M>(), meta, shown_number(value)));
   }
 };
 
@@ -205,7 +218,7 @@ const ParameterTable& parameter_table() {
         visitor.infos,
         [infos](const void* object, std::size_t i) {
           double number = 0;
-          detail::PickVisitor pick{i, [&](const auto& member) { number = detail::as_number(member); }};
+          detail::PickVisitor pick{i, [&](const auto& member) { number = detail::shown_number(member); }};
           T::parameters(*static_cast<const T*>(object), pick);
           return detail::make_value(infos[i], number);
         },

@@ -137,5 +137,13 @@ TEST(Parameters, EveryTechniqueTakesItsWholeRange) {
   }
 }
 
+// What is written comes back, digit by digit, though the member is a float.
+TEST(Parameters, FloatsReadBackAsWritten) {
+  for (const char* text : {"0.1", "1e-05", "0.04", "123456.7", "0", "0.3333333"}) {
+    const double written = std::stod(text);
+    EXPECT_EQ(detail::nearest_decimal(static_cast<float>(written)), written) << text;
+  }
+}
+
 }  // namespace
 }  // namespace pellucid
