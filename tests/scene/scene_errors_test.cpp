@@ -68,9 +68,8 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
       // objects
       {"[meshes.a]\n", "5:1: 'shape' is missing in meshes.a"},
       {"[meshes.a]\nshape = \"sfere\"\n",
-       "6:9: meshes.a.shape = 'sfere' is not one of sphere, box, plane, cylinder, cone, torus, teapot, relief; did you "
-       "mean "
-       "'sphere'?"},
+       "6:9: meshes.a.shape = 'sfere' is not one of sphere, box, plane, cylinder, cone, torus, teapot, relief, tiles; "
+       "did you mean 'sphere'?"},
       {"[meshes.a]\nshape = \"sphere\"\nsegments = 2\n", "7:12: meshes.a.segments = 2 is out of range [3, 2048]"},
       {"[meshes.a]\nshape = \"sphere\"\nsegments = 8.5\n", "7:12: meshes.a.segments must be an integer, not a number"},
       {"[meshes.a]\nshape = \"box\"\nradius = 2\n", "7:1: unknown key 'radius' in meshes.a; known are shape, size"},
