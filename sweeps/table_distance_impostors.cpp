@@ -95,10 +95,10 @@ Table figure_table(int figure_number, const TableInfo& info, const ChosenRows& a
   Table table{.info = info, .rows = {}, .heading_rows = 1, .records = {}, .notes = {}, .sweep = chosen.sweep};
   if (chosen.rows.empty()) table.sweep.clear();
 
-  TableRow heading{"Method", {}, TableRow::all};
+  std::vector<std::string> labels;
   for (const Method& method : figure.methods)
-    heading.cells.push_back({method.label, std::nullopt});
-  table.rows.push_back(std::move(heading));
+    labels.push_back(method.label);
+  table.rows.push_back(words_row("Method", labels));
 
   std::vector<Place> everywhere;
   for (const Stand& stand : figure.stands) {

@@ -22,13 +22,6 @@ struct PublishedModel {
 constexpr PublishedModel kTable2[] = {
     {"Venus", "head", 40e3, 249, 1, 23}, {"Bunny", "bunny", 80e3, 1085, 2, 14}, {"Isis", "statue", 28e3, 384, 2, 25}};
 
-TableRow words_row(std::string label, const std::vector<std::string>& words) {
-  TableRow row{std::move(label), {}, TableRow::all};
-  for (const std::string& word : words)
-    row.cells.push_back({word, std::nullopt});
-  return row;
-}
-
 struct Quantity {
   const char* label;
   const char* field;

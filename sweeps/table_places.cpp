@@ -48,6 +48,13 @@ TableRow value_row(std::string label, std::span<const Place> places, int decimal
   return row;
 }
 
+TableRow words_row(std::string label, const std::vector<std::string>& words) {
+  TableRow row{std::move(label), {}, TableRow::all};
+  for (const std::string& word : words)
+    row.cells.push_back({word, std::nullopt});
+  return row;
+}
+
 TableRow paper_row(std::string label, int decimals, const std::vector<std::optional<double>>& values) {
   TableRow row{std::move(label), {}, TableRow::all};
   for (const auto& value : values)

@@ -32,6 +32,8 @@ TableRow our_row(std::string label, std::span<const Place>, int digits, const Pl
 /// The same with values that are worked out already, one for each place.
 TableRow value_row(std::string label, std::span<const Place>, int decimals,
                    const std::vector<std::optional<double>>& values);
+/// Words alone: a heading.
+TableRow words_row(std::string label, const std::vector<std::string>& words);
 /// Published numbers, or nothing where the paper has none.
 TableRow paper_row(std::string label, int decimals, const std::vector<std::optional<double>>& values);
 

@@ -80,13 +80,6 @@ std::vector<std::pair<std::string, Value>> values_of(const Column& column) {
   return values;
 }
 
-TableRow words_row(std::string label, const std::vector<std::string>& words) {
-  TableRow row{std::move(label), {}, TableRow::all};
-  for (const std::string& word : words)
-    row.cells.push_back({word, std::nullopt});
-  return row;
-}
-
 /// The frame rate over that of the slices it is compared with.
 std::optional<double> ratio(std::optional<double> rate, std::optional<double> of_slices) {
   return rate && of_slices && *of_slices > 0 ? std::optional(*rate / *of_slices) : std::nullopt;
