@@ -1,0 +1,90 @@
+// The tables of geocube and distance impostors: published numbers, and ours from the rows of their blocks.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "sweeps/tables.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+using nlohmann::json;
+
+json row(const char* sweep, const char* block, const char* technique, const char* scene, json values) {
+  json out{{"point", std::string(block) + scene + values.dump()},
+           {"sweep", sweep},
+           {"block", block},
+           {"technique", technique},
+           {"scene", scene},
+           {"view", "front"},
+           {"width", 512},
+           {"height", 512},
+           {"status", "ok"},
+           {"frame_ms_median", 50.0},
+           {"frame_ms_ci95_low", 49.0},
+           {"frame_ms_ci95_high", 51.0},
+           {"fps", 20.0},
+           {"frames", 30},
+           {"timing", "converged"},
+           {"clock", "finish"},
+           {"device", "renderer A"},
+           {"driver", "driver 1"},
+           {"commit", "0"},
+           {"dirty", false}};
+  out.update(values);
+  return out;
+}
+
+const TableRow& row_of(const Table& table, std::string_view label) {
+  for (const TableRow& r : table.rows) {
+    if (r.label == label) return r;
+  }
+  throw std::logic_error("no row " + std::string(label));
+}
+
+TEST(GeocubeTables, Table2PutsOursBesideThePapers) {
+  const Table table = make_table("geocube.table2", {row("geocube_table2", "bunny", "geocube", "glass_bunny",
+                                                        {{"precomputation_s", 0.65}, {"object_triangles", 75408}})});
+  EXPECT_EQ(row_of(table, "precomputation [s] (paper)").cells.at(1).value, 1085.0);
+  EXPECT_EQ(row_of(table, "precomputation [s] (ours)").cells.at(1).value, 0.65);
+  EXPECT_EQ(row_of(table, "triangles (ours)").cells.at(1).text, "75408");
+  EXPECT_EQ(row_of(table, "fps (paper)").cells.at(1).value, 14.0);
+  EXPECT_EQ(row_of(table, "fps (ours)").cells.at(1).value, 20.0);
+  for (const std::size_t missing : {0U, 2U})
+    EXPECT_FALSE(row_of(table, "fps (ours)").cells.at(missing).value) << missing;
+  EXPECT_EQ(table.records.size(), 6U) << "frame rate and precomputation of three models";
+}
+
+TEST(GeocubeTables, Fig16TellsMethodsAndScenesApart) {
+  const Table table = make_table(
+      "geocube.fig16",
+      {row("geocube_figures", "automatic", "geocube", "glass_bunny", {{"cubes", 2}, {"flip_mean_mask", 0.2}}),
+       row("geocube_figures", "automatic", "geocube", "glass_bunny", {{"cubes", 5}, {"flip_mean_mask", 0.1}}),
+       row("geocube_figures", "automatic", "geocube", "glass_torus", {{"cubes", 2}, {"flip_mean_mask", 0.3}})});
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(5).value, 0.2);
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(6).value, 0.1);
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_torus").cells.at(5).value, 0.3);
+}
+
+TEST(ImpostorTables, Fig5TellsPlacesOfTheBallApart) {
+  std::vector<json> rows;
+  for (const double x : {0.0, 1.6, 2.7}) {
+    rows.push_back(row("distance_impostors_figures", "fig5", "distance_impostors", "mirror_room",
+                       {{"iterations", 2}, {"scene.ball_x", x}, {"flip_mean_mask", 0.01 + x / 100}}));
+  }
+  const Table table = make_table("distance_impostors.fig5", rows);
+  EXPECT_EQ(row_of(table, "FLIP on the object, in the middle").cells.at(5).value, 0.01);
+  EXPECT_EQ(row_of(table, "FLIP on the object, in a corner").cells.at(5).value, 0.01 + 2.7 / 100);
+  EXPECT_FALSE(row_of(table, "FLIP on the object, in a corner").cells.at(4).value);
+}
+
+TEST(ImpostorTables, RatesGiveTheRangeThatThePaperNames) {
+  const Table table = make_table(
+      "distance_impostors.rates",
+      {row("distance_impostors_scenes", "fig14", "distance_impostors", "armour_hall", {{"flip_mean", 0.05}})});
+  EXPECT_EQ(row_of(table, "fps (paper)").cells.at(5).text, "105 to 130");
+  EXPECT_EQ(row_of(table, "fps (paper)").cells.at(0).value, 182.0);
+  EXPECT_EQ(row_of(table, "fps (ours)").cells.at(5).value, 20.0);
+}
+
+}  // namespace
+}  // namespace pellucid::sweeps
