@@ -46,20 +46,28 @@ constexpr Words kMiddle[] = {"scene.ball_x=0", "scene.ball_z=-2.6"};
 constexpr Words kOffCentre[] = {"scene.ball_x=1.6", "scene.ball_z=-2.6"};
 constexpr Words kCorner[] = {"scene.ball_x=2.7", "scene.ball_z=-2.6"};
 
-constexpr PaperPictures fig5(Words name, Words title, std::span<const Words> settings) {
+// A set of the paper's 700×700 against ray tracing.
+constexpr PaperPictures traced(Words name, Words title, Words scene, std::span<const PaperPicture> pictures,
+                               Words close_up_of, int close_up) {
   return {.name = name,
           .title = title,
-          .scene = "mirror_room",
+          .scene = scene,
           .preview_scene = "",
           .view = "",
-          .settings = settings,
+          .settings = {},
           .width = 700,
           .height = 700,
           .surfaces = "rays",
-          .pictures = kFig5,
-          .close_up_of = "niter_0",
-          .close_up_width = 140,
-          .close_up_height = 140};
+          .pictures = pictures,
+          .close_up_of = close_up_of,
+          .close_up_width = close_up,
+          .close_up_height = close_up};
+}
+
+constexpr PaperPictures fig5(Words name, Words title, std::span<const Words> settings) {
+  PaperPictures set = traced(name, title, "mirror_room", kFig5, "niter_0", 140);
+  set.settings = settings;
+  return set;
 }
 
 constexpr Words kCaustics[] = {"caustics=true"};
@@ -81,52 +89,20 @@ constexpr PaperPicture kGamePictures[] = {
 
 constexpr PaperPictures scene(Words name, Words title, Words file, Words preview, Words view, bool caustics,
                               std::span<const PaperPicture> pictures) {
-  return {.name = name,
-          .title = title,
-          .scene = file,
-          .preview_scene = preview,
-          .view = view,
-          .settings = {},
-          .width = 700,
-          .height = 700,
-          .surfaces = "rays",
-          .caustics = caustics,
-          .pictures = pictures,
-          .close_up_of = pictures[0].name,
-          .close_up_width = 160,
-          .close_up_height = 160};
+  PaperPictures set = traced(name, title, file, pictures, pictures[0].name, 160);
+  set.preview_scene = preview;
+  set.view = view;
+  set.caustics = caustics;
+  return set;
 }
 
 constexpr PaperPictures kPictures[] = {
     fig5("fig5_middle", "Fig. 5: a mirror ball before the middle of the back wall", kMiddle),
     fig5("fig5_off_centre", "Fig. 5: off-centre", kOffCentre),
     fig5("fig5_corner", "Fig. 5: in a corner", kCorner),
-    {.name = "fig6",
-     .title = "Fig. 6: a box hides a part of the room from the reference point",
-     .scene = "mirror_room_box",
-     .preview_scene = "",
-     .view = "",
-     .settings = {},
-     .width = 700,
-     .height = 700,
-     .surfaces = "rays",
-     .pictures = kFig6,
-     .close_up_of = "niter_3",
-     .close_up_width = 140,
-     .close_up_height = 140},
-    {.name = "fig7",
-     .title = "Fig. 7: a refracting ball, n = 1.1",
-     .scene = "glass_room",
-     .preview_scene = "",
-     .view = "",
-     .settings = {},
-     .width = 700,
-     .height = 700,
-     .surfaces = "rays",
-     .pictures = kFig7,
-     .close_up_of = "double_niter_0",
-     .close_up_width = 160,
-     .close_up_height = 160},
+    traced("fig6", "Fig. 6: a box hides a part of the room from the reference point", "mirror_room_box", kFig6,
+           "niter_3", 140),
+    traced("fig7", "Fig. 7: a refracting ball, n = 1.1", "glass_room", kFig7, "double_niter_0", 160),
     scene("fig10", "Fig. 10: the caustic of a glass ball", "glass_caustic", "", "front", true, kFig10),
     scene("fig11", "Fig. 11: the caustic seen through the ball", "glass_caustic", "", "through", true, kFig10),
     scene("fig12_skull", "Fig. 12: a glass skull", "glass_skull", "glass_skull_procedural", "", false, kFig12),
