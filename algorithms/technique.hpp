@@ -5,10 +5,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/image.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"
 #include "gl/timer.hpp"
@@ -25,6 +27,14 @@ struct Target {
   const gl::Framebuffer& framebuffer;
 };
 
+/// One of a technique's errors by pixel.
+struct NativeMap {
+  std::string name;  ///< snake_case; native_errors() gives its `_mean` and the like, for 0 or 1 its `_share`
+  std::string unit;  ///< "diagonals", "deg", "steps"; empty for 0 or 1
+  std::string doc;   ///< one line, no full stop
+  Image values;      ///< one channel; NaN where the pixel shows no object of the technique's, or the error has no value
+};
+
 /// A rendering technique. A context must be current for every call but parameters().
 class Technique {
  public:
@@ -38,6 +48,9 @@ class Technique {
   virtual void render(const Scene&, const Camera&, ForwardPass& forward, const Target&, gl::PassTimer&) = 0;
   /// Errors that the technique can tell of itself (miss rate, exit distance); empty when there are none.
   virtual void native_errors(nlohmann::json&) const {}
+  /// The same of the last frame by pixel, from the one computation; empty before the first frame, and from techniques
+  /// whose TechniqueInfo does not promise `maps`.
+  virtual std::vector<NativeMap> native_maps() const { return {}; }
   /// Recompiles its shaders from the current sources; returns the compiler's words, empty when all is well.
   virtual std::string reload_shaders() = 0;
 };
@@ -51,6 +64,7 @@ struct TechniqueInfo {
   const ParameterTable& (*table)() = nullptr;
   std::unique_ptr<Technique> (*make)() = nullptr;
   bool interfaces = false;  ///< draws mirrors, metals and dielectrics; the others refuse a scene that has some
+  bool maps = false;        ///< tells its errors by pixel: Technique::native_maps()
 };
 
 /// Every technique, in registry.cpp's order.

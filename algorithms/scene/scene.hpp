@@ -55,6 +55,8 @@ struct Instance {
   int material = 0;
   glm::mat4 to_world{1.0F};
   glm::vec3 tint{1.0F};  ///< multiplies the albedo
+  /// Where techniques with several cube maps in an object put them by hand: points in the mesh's space [m].
+  std::vector<glm::vec3> cubes{};
 };
 
 enum class LightKind { directional, point, spot };
