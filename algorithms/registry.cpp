@@ -29,7 +29,7 @@ static const std::array kTechniques{
                   front_refraction::make, true},
     TechniqueInfo{"geocube", "Geocube", "chan2005", false,
                   "refraction at both sides and internal reflection by cube maps of distances and cones",
-                  geocube::table, geocube::make, true},
+                  geocube::table, geocube::make, true, true},
     TechniqueInfo{"sampling_hulls", "Sampling hulls", "imagire2007", false,
                   "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
                   sampling_hulls::table, sampling_hulls::make},

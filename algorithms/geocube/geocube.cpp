@@ -81,7 +81,11 @@ class Geocube final : public Technique {
     out["cube_bytes"] = bytes;
     out["unseen_share"] = unseen;
     out["dropped_share"] = dropped;
-    if (frame_) compare_searches(out);
+    if (frame_) compare_searches().write(out);
+  }
+
+  std::vector<NativeMap> native_maps() const override {
+    return frame_ ? compare_searches().maps() : std::vector<NativeMap>();
   }
 
   std::string reload_shaders() override {
@@ -252,7 +256,7 @@ class Geocube final : public Technique {
   }
 
   // The first searches of the last frame's pixels, drawn again into textures.
-  void compare_searches(nlohmann::json& out) const {
+  SearchErrors compare_searches() const {
     const int width = entry_points_.width(), height = entry_points_.height();
     const auto make = [&](const char* name) { return gl::Texture::make_2d(name, gl::Format::rgba32f, width, height); };
     const gl::Texture entry = make("entries"), ray = make("rays"), point = make("exits"), normal = make("exit normals");
@@ -260,7 +264,7 @@ class Geocube final : public Technique {
     gl::Defines defines = own_defines();
     defines.emplace_back("REPORT", "1");
     const gl::Program program("geocube report", {kFullscreen, "algorithms/geocube/glass.frag.glsl"}, defines);
-    SearchErrors errors;
+    SearchErrors errors(width, height);
     for (const GlassObject& object : objects_) {
       if (object.cubes() == nullptr) continue;
       framebuffer.bind();
@@ -269,7 +273,7 @@ class Geocube final : public Technique {
       errors.add({entry.read(), ray.read(), point.read(), normal.read()}, *object.solid(),
                  static_cast<double>(material_of(object, *frame_->scene).ior));
     }
-    errors.write(out);
+    return errors;
   }
 
   Parameters parameters_;

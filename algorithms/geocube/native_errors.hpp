@@ -5,10 +5,11 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "algorithms/geocube/solid.hpp"
+#include "algorithms/technique.hpp"
 
 namespace pellucid::geocube {
 
-/// What a pixel's first search found, in the object's space; four floats a pixel each.
+/// What a pixel's first search found, in the object's space; four floats a pixel each, rows from the bottom.
 struct SearchReport {
   std::vector<float> entry;        ///< point; 1 where the pixel shows the object and light enters
   std::vector<float> ray;          ///< unit direction inside; steps
@@ -16,20 +17,21 @@ struct SearchReport {
   std::vector<float> exit_normal;  ///< unit; last cube
 };
 
-/// One object's searches beside the true surface (Embree); lengths are shares of the object's diagonal.
+/// The searches of a frame beside the true surface (Embree), by pixel; lengths are shares of the object's diagonal.
 class SearchErrors {
  public:
-  /// `ior` of the material, for the directions of the light that leaves.
+  SearchErrors(int width, int height);
+  /// One object's pixels. `ior` of the material, for the directions of the light that leaves.
   void add(const SearchReport&, const Solid&, double ior);
   /// `exit_error_mean`, `_median`, `_q95`, `_max`; `length_error_mean` …; `exit_direction_error_deg_mean` … of the rays
-  /// that leave in both; `early_share`: of the rays that end more than 1 % of the diagonal before the surface;
-  /// `bounded_share`: stopped by the bound; `steps_mean`, `steps_max`; `object_pixels`.
-  void write(nlohmann::json& out);
+  /// that leave in both; `steps_mean` …; `early_share`: of the rays that end more than 1 % of the diagonal before the
+  /// surface; `bounded_share`: stopped by the bound; `object_pixels`.
+  void write(nlohmann::json& out) const;
+  /// The same by pixel: `exit_error`, `length_error`, `exit_direction_error_deg`, `steps`, `early`, `bounded`.
+  std::vector<NativeMap> maps() && { return std::move(maps_); }
 
  private:
-  std::vector<double> exit_, length_, direction_deg_;
-  std::size_t early_ = 0, bounded_ = 0;
-  double steps_ = 0, most_steps_ = 0;
+  std::vector<NativeMap> maps_;
 };
 
 }  // namespace pellucid::geocube
