@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   std::vector<sandbox::Command> commands;
   sandbox::add_list(root, commands);
   sandbox::add_render(root, commands);
+  sandbox::add_reference(root, commands);
   sandbox::add_compare(root, commands);
   sandbox::add_sweep(root, commands);
   sandbox::add_results(root, commands);

@@ -19,7 +19,8 @@ struct Command {
 
 // Each adds its sub-commands (one or more) to `root`.
 void add_list(CLI::App& root, std::vector<Command>&);       ///< list, describe, devices
-void add_render(CLI::App& root, std::vector<Command>&);     ///< render, reference
+void add_render(CLI::App& root, std::vector<Command>&);     ///< render
+void add_reference(CLI::App& root, std::vector<Command>&);  ///< reference
 void add_compare(CLI::App& root, std::vector<Command>&);    ///< compare
 void add_sweep(CLI::App& root, std::vector<Command>&);      ///< sweep run, sweep status, the hidden worker
 void add_results(CLI::App& root, std::vector<Command>&);    ///< results, table

@@ -1,0 +1,300 @@
+// pellucid reference.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "algorithms/render_session.hpp"
+#include "algorithms/shadow_maps.hpp"
+#include "gl/context.hpp"
+#include "sandbox/commands/commands.hpp"
+#include "sandbox/commands/frame_options.hpp"
+#include "sandbox/commands/scene_facts.hpp"
+#include "sweeps/metrics/metrics.hpp"
+#include "sweeps/reference_methods.hpp"
+#include "sweeps/worker_protocol.hpp"
+
+namespace pellucid::sandbox {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options : FrameOptions {
+  std::string surfaces = "rays", method = "exact", format = "half";
+  double tolerance = ReferenceOptions{}.tolerance;
+  int max_steps = ReferenceOptions{}.max_steps;
+  int slices = sweeps::ReferenceSettings{}.slices;
+  double shadow_share = 0;
+  SurfaceOptions tracing;
+};
+
+sweeps::ReferenceSettings reference_settings(const Options& options) {
+  sweeps::ReferenceSettings settings;
+  settings.method = options.method == "exact" ? sweeps::ReferenceMethod::exact : sweeps::ReferenceMethod::slices;
+  settings.surfaces = options.surfaces == "rays"     ? sweeps::ReferenceSurfaces::rays
+                      : options.surfaces == "raster" ? sweeps::ReferenceSurfaces::raster
+                                                     : sweeps::ReferenceSurfaces::forward;
+  settings.format = options.format == "half" ? sweeps::SlicesFormat::half : sweeps::SlicesFormat::single;
+  settings.tolerance = options.tolerance;
+  settings.max_steps = options.max_steps;
+  settings.slices = options.slices;
+  settings.shadow_share = options.shadow_share;
+  settings.samples = options.tracing.samples;
+  settings.caustics = options.tracing.caustics;
+  return settings;
+}
+
+/// The `-s` of a reference: the scene's parameters, and the shadow maps' where something is drawn with them.
+std::map<std::string, Value> reference_parameters(const Options& options, Scene& scene, bool draws) {
+  std::map<std::string, Value> out;
+  const auto parse = [&](const std::string& full, const std::string& bare, const std::string& text,
+                         const std::string& owner, std::span<const ParameterInfo> infos) {
+    const auto info = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == bare; });
+    if (info == infos.end()) throw unknown_parameter(bare, owner, infos);
+    out[full] = parse_value(*info, text, owner);
+  };
+  for (const std::string& setting : options.settings) {
+    const auto [name, value] = parse_assignment(setting);
+    if (name.starts_with("scene.")) {
+      parse(name, name.substr(6), value, "scene " + scene.name, scene.parameters().infos());
+      scene.parameters().assign(name.substr(6), out[name], "scene " + scene.name);
+    } else if (draws && name.starts_with("shadow.")) {
+      parse(name, name.substr(7), value, "shadow", parameter_table<ShadowSettings>().infos());
+    } else {
+      throw InputError(fmt::format("-s {}: a reference has no technique, so only scene. parameters can be set{}",
+                                   setting,
+                                   draws ? ", and those of the shadow maps (shadow.) that it is drawn with" : ""));
+    }
+  }
+  for (const ParameterInfo& info : scene.parameters().infos())
+    out["scene." + info.name] = scene.parameters().get(info.name);
+  return out;
+}
+
+/// How far the picture of slices lies from the exact reference.
+ordered_json distance(const Image& exact, const Image& slices) {
+  sweeps::ComparisonOptions comparing;
+  comparing.metrics = sweeps::MetricSet(std::vector<std::string>{"flip", "rmse"});
+  const sweeps::ComparisonResult result = sweeps::Comparison(exact, nullptr, std::move(comparing)).compare(slices);
+  return {{"to_exact_flip_mean", result.at("flip_mean")}, {"to_exact_rmse", result.at("rmse")}};
+}
+
+/// What surfaces from rays cost, and their errors.
+ordered_json statistics_json(const SurfaceStatistics& s) {
+  return {{"standard_error_max", s.standard_error_max},
+          {"standard_error_mean", s.standard_error_mean},
+          {"caustic_standard_error_max", s.caustic_standard_error_max},
+          {"caustic_standard_error_mean", s.caustic_standard_error_mean},
+          {"cut_weight_max", s.cut_weight_max},
+          {"cut_weight_mean", s.cut_weight_mean},
+          {"limited_weight_mean", s.limited_weight_mean},
+          {"lost_weight_mean", s.lost_weight_mean},
+          {"rays", s.rays},
+          {"rays_per_s", s.rays_per_s()},
+          {"build_s", s.build_s},
+          {"photons_s", s.photons_s},
+          {"trace_s", s.trace_s}};
+}
+
+int reference(const Options& options) {
+  const Size size = parse_size(options.size);
+  check_output(options.output, {".exr", ".png"});
+  sweeps::ReferenceSettings settings = reference_settings(options);
+  const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
+  const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
+  Scene loaded = load_scene(options.scene);
+  settings = sweeps::settled(settings, loaded.name, has_interfaces(loaded), loaded.volume.has_value());
+  const std::map<std::string, Value> parameters = reference_parameters(options, loaded, draws);
+  const Camera camera{loaded.find_view(options.view), size.width, size.height};
+  ReferenceOptions tracing;
+  tracing.tolerance = options.tolerance;
+  tracing.max_steps = options.max_steps;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (terminal) {
+    tracing.progress = [](double share) { fmt::print(stderr, "\rreference {:3.0f} %", 100 * share); };
+  }
+
+  ordered_json origin = file_provenance();
+  origin["scene_hash"] = loaded.content_hash();
+  SurfaceLayer surfaces;
+  Image slices;
+  // What draws takes the scene, with its parameters as they are; the rest uses it there.
+  std::optional<gl::Context> context;
+  std::optional<RenderSession> session;
+  if (draws || settings.surfaces == sweeps::ReferenceSurfaces::raster) {
+    context.emplace(gl::ContextOptions{.device = options.device});
+    session.emplace(std::move(loaded), techniques().front().name, camera.view.name, size.width, size.height);
+    for (const auto& [name, value] : parameters) {
+      if (name.starts_with("shadow.")) session->assign(name, value);
+    }
+    surfaces = sweeps::reference_surfaces(*session, settings);
+    if (of_slices)
+      slices = sweeps::draw_slices(options.scene, parameters, camera.view.name, size.width, size.height, settings);
+    origin["device"] = context->device().renderer;
+    origin["driver"] = context->device().version;
+  } else {
+    SurfaceOptions rays = options.tracing;
+    rays.progress = tracing.progress;
+    surfaces = trace_surfaces(loaded, camera, rays);
+  }
+  Scene& scene = session ? session->scene() : loaded;
+  const Reference exact = render_reference(scene, camera, surfaces, tracing);
+
+  ordered_json errors{{"step_error_max", exact.step_error_max},
+                      {"step_error_mean", exact.step_error_mean},
+                      {"unconverged_share", exact.unconverged_share}};
+  nlohmann::json shown = nlohmann::json::object();
+  for (const auto& [name, value] : parameters)
+    shown[name] = sweeps::value_to_json(value);
+  ordered_json recipe{
+      {"scene", options.scene},         {"view", camera.view.name},     {"width", size.width},
+      {"height", size.height},          {"surfaces", options.surfaces}, {"tolerance", options.tolerance},
+      {"max_steps", options.max_steps}, {"parameters", shown}};
+  const bool from_rays = settings.surfaces == sweeps::ReferenceSurfaces::rays;
+  if (from_rays) {
+    const SurfaceOptions& rays = options.tracing;
+    recipe["samples"] = rays.samples;
+    recipe["reflections"] = rays.reflections;
+    recipe["cut"] = rays.cut;
+    recipe["caustics"] = rays.caustics;
+    if (rays.caustics) {
+      recipe["photons"] = rays.photons;
+      recipe["caustic_radius_m"] = rays.caustic_radius_m;
+    }
+    errors.update(statistics_json(exact.surfaces));
+  }
+  ImageFile file;
+  file.image = exact.image;
+  file.layers["mask"] = exact.mask;
+  if (of_slices) {
+    recipe["method"] = options.method;
+    recipe["slices"] = options.slices;
+    recipe["format"] = options.format;
+    errors.update(distance(exact.image, slices));
+    file.image = std::move(slices);
+  }
+  if (settings.shadow_share > 0) {
+    recipe["shadow_share"] = settings.shadow_share;
+    const Reference unshadowed =
+        sweeps::trace_unshadowed(sweeps::load_again(options.scene, parameters), camera, surfaces, tracing);
+    file.layers["shadow"] = sweeps::shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
+  }
+  if (terminal) fmt::print(stderr, "\r");
+  file.attributes = file_attributes("reference", recipe, origin);
+  file.attributes["pellucid.reference_error"] = errors.dump();
+  write_picture(options.output, file, options.display);
+  if (options.json) {
+    ordered_json out = recipe;
+    out.update(errors);
+    out["volume"] = volume_json(scene);
+    out["output"] = options.output.string();
+    fmt::print("{}\n", out.dump(2));
+    return kDone;
+  }
+  fmt::print(stderr,
+             "{}: {} of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance\n",
+             options.output.string(),
+             of_slices ? fmt::format("{} slices in a frame of {} format", options.slices, options.format) : "reference",
+             options.scene, size.width, size.height, exact.step_error_max, exact.step_error_mean,
+             100 * exact.unconverged_share);
+  if (from_rays) {
+    const SurfaceStatistics& s = exact.surfaces;
+    fmt::print(
+        stderr,
+        "{}: {:.3g} s for {} rays ({:.3g} a second); standard error max {:.2g}, mean {:.2g}; weight left out max "
+        "{:.2g}, mean {:.2g}\n",
+        options.output.string(), s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
+        s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
+    if (s.lost_weight_mean > 0) {
+      fmt::print(stderr,
+                 "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its "
+                 "mesh is open or inside out\n",
+                 s.lost_weight_mean);
+    }
+  }
+  if (of_slices) {
+    fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", options.output.string(),
+               errors.at("to_exact_flip_mean").get<double>(), errors.at("to_exact_rmse").get<double>());
+  }
+  return kDone;
+}
+
+void add_rays(CLI::App& app, SurfaceOptions& rays) {
+  app.add_option("--samples", rays.samples,
+                 "Rays a pixel, stratified over its square; 1 is its centre. The standard error is stated")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  app.add_option("--reflections", rays.reflections,
+                 "Most reflections inside a dielectric; light that needs more is dark")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--cut", rays.cut, "Share of a pixel's light below which a branch at an interface is left out")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_flag("--caustics", rays.caustics, "Light that reaches surfaces through objects, by photons");
+  app.add_option("--photons", rays.photons, "Of --caustics, for each light that casts shadows and each object")
+      ->check(CLI::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))
+      ->capture_default_str();
+  app.add_option("--caustic-radius", rays.caustic_radius_m,
+                 "Radius [m] over which a photon's light is spread; 0: 1 % of the largest object's")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_reference(CLI::App& root, std::vector<Command>& commands) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("reference", "Compute the ground truth of a scene on the CPU");
+  add_frame_options(*app, *options);
+  app->add_option(
+         "--surfaces", options->surfaces,
+         "rays: surfaces traced with Embree; raster: from the forward pass, so that silhouettes are the same as in a "
+         "rendering, with exact shadows; forward: with its shadow maps too, so that a metric sees the medium alone")
+      ->check(CLI::IsMember({"rays", "raster", "forward"}))
+      ->capture_default_str();
+  add_rays(*app, options->tracing);
+  app->add_option("--tolerance", options->tolerance, "Change of radiance at which a pixel counts as converged")
+      ->check(CLI::Range(1e-12, 1.0))
+      ->capture_default_str();
+  app->add_option("--max-steps", options->max_steps, "Most steps along a ray")
+      ->check(CLI::Range(2, 1 << 20))
+      ->capture_default_str();
+  app->add_option("--method", options->method,
+                  "exact: the medium is integrated; slices: the picture of very many slices that Imagire et al. "
+                  "2007 judge by, with its distance from the exact one")
+      ->check(CLI::IsMember({"exact", "slices"}))
+      ->capture_default_str();
+  const CLI::Option* slices = app->add_option("--slices", options->slices, "How many, of --method slices")
+                                  ->check(CLI::Range(1, 4096))
+                                  ->capture_default_str();
+  const CLI::Option* format = app->add_option("--format", options->format, "half or single: what the slices blend into")
+                                  ->check(CLI::IsMember({"half", "single"}))
+                                  ->capture_default_str();
+  app->add_option("--shadow-share", options->shadow_share,
+                  "Add a layer `shadow`: the pixels whose luminance the shadows in the medium lower by more than this "
+                  "share")
+      ->check(CLI::Range(0.0, 0.99));
+  app->footer(
+      "Examples:\n"
+      "  pellucid reference fog_forest --size 360x270 -o truth.exr\n"
+      "  pellucid reference fog_forest --method slices --slices 1024 -o slices.exr\n"
+      "  pellucid reference teapot_room --surfaces raster --shadow-share 0.05 -o truth.exr\n"
+      "  pellucid compare truth.exr hulls.exr --mask shadow");
+  commands.push_back({app, [options, slices, format] {
+                        for (const CLI::Option* option : {slices, format}) {
+                          if (option->count() > 0 && options->method != "slices") {
+                            throw InputError(fmt::format("{} goes with --method slices", option->get_name()));
+                          }
+                        }
+                        return reference(*options);
+                      }});
+}
+
+}  // namespace pellucid::sandbox
