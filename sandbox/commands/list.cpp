@@ -24,6 +24,7 @@ ordered_json techniques_json() {
                    {"reference", t.reference},
                    {"baseline", t.baseline},
                    {"interfaces", t.interfaces},
+                   {"maps", t.maps},
                    {"doc", t.doc}});
   }
   return out;

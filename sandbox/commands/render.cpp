@@ -13,6 +13,7 @@
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
 #include "sandbox/commands/scene_facts.hpp"
+#include "sandbox/native_maps.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -21,6 +22,7 @@ using nlohmann::ordered_json;
 
 struct Options : FrameOptions {
   std::string technique;
+  std::filesystem::path maps;  // a folder; empty: none
 };
 
 void require_finite(const Image& image, const std::string& what) {
@@ -36,7 +38,8 @@ void require_finite(const Image& image, const std::string& what) {
 int render(const Options& options) {
   const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
-  find_technique(options.technique);  // a wrong name is told before the scene loads
+  const TechniqueInfo& technique = find_technique(options.technique);  // a wrong name is told before the scene loads
+  if (!options.maps.empty()) check_maps(technique, options.maps);
   Scene scene = load_scene(options.scene);
   const gl::Context context({.device = options.device});
   RenderSession session(std::move(scene), options.technique, options.view, size.width, size.height);
@@ -60,6 +63,11 @@ int render(const Options& options) {
   origin["driver"] = context.device().version;
   file.attributes = file_attributes("render", recipe, origin);
   write_picture(options.output, file, options.display);
+  ordered_json maps;
+  if (!options.maps.empty()) {
+    maps =
+        write_maps(options.maps, session.technique().native_maps(), file_attributes("render --maps", recipe, origin));
+  }
 
   if (options.json) {
     ordered_json out = recipe;
@@ -79,10 +87,12 @@ int render(const Options& options) {
     out["volume"] = volume_json(session.scene());
     out["provenance"] = origin;
     out["output"] = options.output.string();
+    if (!options.maps.empty()) out["maps"] = maps;
     fmt::print("{}\n", out.dump(2));
   } else {
     fmt::print(stderr, "{}: {} of {}, {}x{}, first frame {:.1f} ms on {}\n", options.output.string(), options.technique,
                options.scene, size.width, size.height, time->frame_ms, context.device().renderer);
+    if (!options.maps.empty()) fmt::print(stderr, "{}", maps_text(maps));
   }
   return kDone;
 }
@@ -94,6 +104,10 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
   CLI::App* render_app = root.add_subcommand("render", "Render one frame of a scene with a technique");
   add_frame_options(*render_app, *options);
   render_app->add_option("-t,--technique", options->technique, "A technique (pellucid list techniques)")->required();
+  render_app->add_option("--maps", options->maps,
+                         fmt::format("Write the technique's own errors by pixel into this folder, NAME.exr with the "
+                                     "values and NAME.png in colours: of {}",
+                                     techniques_with_maps()));
   render_app->footer(
       "Example: pellucid render fog_forest -t sampling_hulls -s hulls=4 -s samples=8 -o fog.png\n"
       "An EXR carries what made it: pellucid reproduce fog.exr -o DIR renders it again.");
