@@ -105,7 +105,7 @@ class Geocube final : public Technique {
   // A material or a scale may have changed without a call of prepare().
   void refresh(const Scene& scene) {
     for (GlassObject& object : objects_) {
-      if (!object.fits(scene)) object = GlassObject(scene, object.instance(), parameters_);
+      if (!object.fits(scene, parameters_)) object = GlassObject(scene, object.instance(), parameters_);
     }
   }
 

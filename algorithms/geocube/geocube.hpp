@@ -17,8 +17,6 @@ enum class Show { radiance, steps, length, bounded, cube, internal_reflection };
 struct Parameters {
   int cubes = 2;
   Placing placement = Placing::automatic;
-  float cube_1_x = 0.5F, cube_1_y = 0.5F, cube_1_z = 0.5F;
-  float cube_2_x = 0.5F, cube_2_y = 0.5F, cube_2_z = 0.5F;
   int resolution = 64;
   int layers = 1;
   float epsilon = 0.04F;
@@ -39,27 +37,17 @@ struct Parameters {
   Show show = Show::radiance;
 
   static constexpr void parameters(auto& self, auto&& visit) {
-    visit(PARAM(cubes), {.range = {1, 16},
-                         .cite = "Sec. 2.3",
-                         .doc = "cubes in each object: at most, of automatic placement; by hand 1 or 2",
-                         .when = Change::precompute});
+    visit(PARAM(cubes),
+          {.range = {1, 16},
+           .cite = "Sec. 2.3",
+           .doc = "cubes in each object, at most: of automatic placement, or the first of those that the scene "
+                  "file gives",
+           .when = Change::precompute});
     visit(PARAM(placement), {.cite = "Sec. 5",
                              .doc = "where the cubes lie: where they see most of the surface, one in the middle of the "
-                                    "bounds, or as given",
+                                    "bounds, or at the object's cubes = [[x, y, z], …] in the scene file",
                              .when = Change::precompute,
                              .choices = "automatic|middle|hand"});
-    visit(PARAM(cube_1_x), {.range = {0, 1},
-                            .cite = "Sec. 2.3",
-                            .doc = "place of the first cube by hand, as a share of the bounds along x",
-                            .when = Change::precompute});
-    visit(PARAM(cube_1_y), {.range = {0, 1}, .cite = "Sec. 2.3", .doc = "along y", .when = Change::precompute});
-    visit(PARAM(cube_1_z), {.range = {0, 1}, .cite = "Sec. 2.3", .doc = "along z", .when = Change::precompute});
-    visit(PARAM(cube_2_x), {.range = {0, 1},
-                            .cite = "Sec. 2.3",
-                            .doc = "place of the second cube by hand, as a share of the bounds along x",
-                            .when = Change::precompute});
-    visit(PARAM(cube_2_y), {.range = {0, 1}, .cite = "Sec. 2.3", .doc = "along y", .when = Change::precompute});
-    visit(PARAM(cube_2_z), {.range = {0, 1}, .cite = "Sec. 2.3", .doc = "along z", .when = Change::precompute});
     visit(PARAM(resolution), {.range = {8, 512},
                               .cite = "Sec. 2.1",
                               .doc = "width and height of a face of the cube maps",

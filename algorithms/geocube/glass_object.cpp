@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "algorithms/geocube/cache.hpp"
 #include "algorithms/geocube/placement.hpp"
@@ -65,6 +68,12 @@ CubeOptions options_of(const Parameters& p, float ior) {
   return options;
 }
 
+std::vector<glm::vec3> hand_cubes(const Scene& scene, int instance, const Parameters& p) {
+  std::vector<glm::vec3> cubes = scene.instances[static_cast<std::size_t>(instance)].cubes;
+  cubes.resize(std::min(cubes.size(), static_cast<std::size_t>(p.cubes)));
+  return cubes;
+}
+
 }  // namespace
 
 GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& parameters) : instance_(instance) {
@@ -84,7 +93,7 @@ GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& par
   if (dielectric_) {
     solid_ = std::make_unique<Solid>(*mesh, parameters.holes);
     std::vector<glm::dvec3> centers;
-    place(parameters, *mesh, centers);
+    place(scene, parameters, *mesh, centers);
     const CubeSet set = cached_cubes(*solid_, *mesh, centers, options_of(parameters, ior_), cache_folder());
     cubes_ = std::make_unique<CubeTextures>(mesh->name, set);
     for (std::size_t t = 0; t < std::min(mesh->triangles.size(), set.first_cube.size()); ++t) {
@@ -104,10 +113,7 @@ GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& par
   index_count_ = static_cast<int>(mesh->triangles.size() * 3);
 }
 
-void GlassObject::place(const Parameters& p, const Mesh& mesh, std::vector<glm::dvec3>& centers) {
-  const auto share = [&](float x, float y, float z) {
-    return solid_->low() + glm::dvec3(x, y, z) * (solid_->high() - solid_->low());
-  };
+void GlassObject::place(const Scene& scene, const Parameters& p, const Mesh& mesh, std::vector<glm::dvec3>& centers) {
   switch (p.placement) {
     case Placing::automatic: {
       Placement placement = cached_placement(*solid_, mesh, {.cubes = p.cubes}, cache_folder());
@@ -118,18 +124,27 @@ void GlassObject::place(const Parameters& p, const Mesh& mesh, std::vector<glm::
     case Placing::middle:
       centers = {0.5 * (solid_->low() + solid_->high())};
       break;
-    case Placing::hand:
-      centers = {share(p.cube_1_x, p.cube_1_y, p.cube_1_z)};
-      if (p.cubes > 2) throw InputError("geocube: placement = hand places 1 or 2 cubes, not more");
-      if (p.cubes == 2) centers.push_back(share(p.cube_2_x, p.cube_2_y, p.cube_2_z));
+    case Placing::hand: {
+      by_hand_ = hand_cubes(scene, instance_, p);
+      if (by_hand_->empty()) {
+        const std::string& name = scene.instances[static_cast<std::size_t>(instance_)].name;
+        throw InputError(
+            fmt::format("geocube: placement = hand, but instance '{0}' has no cubes; the scene file gives them as "
+                        "cubes = [[x, y, z], …] in [instances.{0}]",
+                        name));
+      }
+      for (const glm::vec3& c : *by_hand_)
+        centers.emplace_back(baked_ ? *baked_ * c : c);
       break;
+    }
   }
 }
 
-bool GlassObject::fits(const Scene& scene) const {
+bool GlassObject::fits(const Scene& scene, const Parameters& parameters) const {
   const Material& material = material_of(scene, instance_);
   if ((material.kind == SurfaceKind::dielectric) != dielectric_) return false;
   if (dielectric_ && material.ior != ior_) return false;
+  if (by_hand_ && hand_cubes(scene, instance_, parameters) != *by_hand_) return false;
   const glm::mat3 linear = linear_part(scene, instance_);
   return baked_ ? *baked_ == linear : even(linear);
 }

@@ -16,12 +16,13 @@ namespace pellucid::geocube {
 /// mesh's, or where the instance is scaled unevenly, the world's but for the place: a circular cone must stay one.
 class GlassObject {
  public:
-  /// Throws InputError as Solid and build_cubes() do.
+  /// Throws InputError as Solid and build_cubes() do, and when cubes are placed by hand but the scene gives none.
   GlassObject(const Scene&, int instance, const Parameters&);
 
   int instance() const { return instance_; }
-  /// True while the instance is a dielectric or none as before, of the same index, scaled as before.
-  bool fits(const Scene&) const;
+  /// True while the instance is a dielectric or none as before, of the same index, scaled as before, and its cubes lie
+  /// where they lay if they are placed by hand.
+  bool fits(const Scene&, const Parameters&) const;
   glm::mat4 to_world(const Scene&) const;
   void draw() const;
 
@@ -31,12 +32,13 @@ class GlassObject {
   const std::vector<double>& unseen() const { return unseen_; }  ///< of automatic placement, after each cube
 
  private:
-  void place(const Parameters&, const Mesh&, std::vector<glm::dvec3>& centers);
+  void place(const Scene&, const Parameters&, const Mesh&, std::vector<glm::dvec3>& centers);
 
   int instance_ = 0;
   bool dielectric_ = false;
   float ior_ = 0;
-  std::optional<glm::mat3> baked_;  // the linear part that the mesh was transformed by
+  std::optional<glm::mat3> baked_;                 // the linear part that the mesh was transformed by
+  std::optional<std::vector<glm::vec3>> by_hand_;  // centres in the mesh's space; none with another placement
   std::unique_ptr<Solid> solid_;
   std::unique_ptr<CubeTextures> cubes_;
   std::vector<double> unseen_;

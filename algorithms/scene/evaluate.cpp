@@ -41,6 +41,8 @@ Mesh make_shape(const SceneDescription& scene, const MeshDescription& mesh) {
                                mesh.radius));
       }
       return make_torus(f(mesh.radius), f(mesh.minor_radius), segments);
+    case MeshKind::star:
+      return make_star({f(mesh.radius), whole(mesh.lobes), f(mesh.amplitude)}, segments);
     case MeshKind::teapot:
       return make_teapot(f(mesh.scale), segments);
     case MeshKind::relief:
@@ -102,7 +104,12 @@ void evaluate_instance(const SceneDescription& description, std::size_t i, doubl
     axes[c] *= from.scale[c];
   glm::dmat4 to_world(axes);
   to_world[3] = glm::dvec4(position_at(from.placement.position, from.placement.position_path, time_s), 1.0);
-  scene.instances[i] = {from.name, from.mesh, from.material, glm::mat4(to_world), glm::vec3(from.tint)};
+  scene.instances[i] = {from.name,
+                        from.mesh,
+                        from.material,
+                        glm::mat4(to_world),
+                        glm::vec3(from.tint),
+                        {from.cubes.begin(), from.cubes.end()}};
 }
 
 // ---- lights and views ----

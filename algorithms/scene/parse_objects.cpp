@@ -16,6 +16,7 @@ constexpr NumberRange kSegments{3, 2048};
 constexpr NumberRange kRefractiveIndex{0.2, 5};
 constexpr NumberRange kMetalIndex{0.01, 20};
 constexpr NumberRange kExtinctionIndex{0, 50};
+constexpr std::size_t kMostCubes = 16;  // of an object; what geocube's `cubes` goes up to
 
 void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, MeshDescription& mesh,
                      SceneDescription& scene) {
@@ -58,11 +59,11 @@ void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, M
 
 void parse_shape(TableReader& reader, MeshDescription& mesh) {
   reader.require("shape");
-  static constexpr MeshKind kKinds[] = {MeshKind::sphere,   MeshKind::box,    MeshKind::plane,
-                                        MeshKind::cylinder, MeshKind::cone,   MeshKind::torus,
-                                        MeshKind::teapot,   MeshKind::relief, MeshKind::tiles};
+  static constexpr MeshKind kKinds[] = {MeshKind::sphere, MeshKind::box,   MeshKind::plane, MeshKind::cylinder,
+                                        MeshKind::cone,   MeshKind::torus, MeshKind::star,  MeshKind::teapot,
+                                        MeshKind::relief, MeshKind::tiles};
   mesh.kind = kKinds[reader.choice(
-      "shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "teapot", "relief", "tiles"}, 0)];
+      "shape", {"sphere", "box", "plane", "cylinder", "cone", "torus", "star", "teapot", "relief", "tiles"}, 0)];
   switch (mesh.kind) {
     case MeshKind::sphere:
       reader.number("radius", mesh.radius, kLength);
@@ -85,6 +86,13 @@ void parse_shape(TableReader& reader, MeshDescription& mesh) {
     case MeshKind::torus:
       reader.number("radius", mesh.radius, kLength);
       reader.number("minor_radius", mesh.minor_radius, kLength);
+      reader.integer("segments", mesh.segments, kSegments);
+      break;
+    case MeshKind::star:
+      mesh.segments = 96;
+      reader.number("radius", mesh.radius, kLength);
+      reader.integer("lobes", mesh.lobes, {1, 64});
+      reader.number("amplitude", mesh.amplitude, {0, 0.9});
       reader.integer("segments", mesh.segments, kSegments);
       break;
     case MeshKind::teapot:
@@ -191,6 +199,7 @@ void parse_instances(TableReader& root, SceneDescription& scene) {
     instance.placement.spin = parse_spin(reader);
     reader.extent("scale", instance.scale, kLength, false);
     reader.color("tint", instance.tint, kShare);
+    reader.points("cubes", instance.cubes, kCoordinate, kMostCubes);
     reader.finish();
     if (instance.placement.position_path || instance.placement.spin) scene.animated.push_back(affected);
   }

@@ -16,6 +16,16 @@ Mesh make_plane(const glm::vec2& size, int segments);          ///< in y = 0, ce
 Mesh make_cylinder(float radius, float height, int segments);  ///< from y = 0 up, capped
 Mesh make_cone(float radius, float height, int segments);      ///< from y = 0 up, capped
 Mesh make_torus(float major_radius, float minor_radius, int segments);
+/// Star-shaped: the radius in the direction u at the angle φ about the y axis is radius·(1 +
+/// amplitude·ρ²·cos(lobes·φ)), ρ the sine of the angle between u and that axis. A ball at amplitude 0.
+struct StarOptions {
+  float radius = 1.0F;
+  int lobes = 3;
+  float amplitude = 0.35F;  ///< 0 to below 1
+};
+double star_radius(const StarOptions&, const glm::dvec3& direction);      ///< `direction` unit
+glm::dvec3 star_normal(const StarOptions&, const glm::dvec3& direction);  ///< unit, outward, of the surface there
+Mesh make_star(const StarOptions&, int segments);                         ///< as make_sphere(); exact normals
 /// Newell's 32 bicubic patches (at most 2·subdivisions² triangles each), bottom included: stands on y = 0, the spout
 /// towards +x; the body's radius is `scale`, the height 1.575·scale. Lid, body, handle and spout are separate shells.
 Mesh make_teapot(float scale, int subdivisions);

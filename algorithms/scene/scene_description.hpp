@@ -27,7 +27,7 @@ struct Placement {
   std::optional<Spin> spin;  ///< after the rotation
 };
 
-enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, teapot, relief, tiles };
+enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, star, teapot, relief, tiles };
 struct MeshDescription {
   std::string name;
   Place place;
@@ -40,6 +40,7 @@ struct MeshDescription {
   double frequency = 3, octaves = 3, ripples = 0, seed = 1;
   double columns = 8, rows = 8, joint = 0.05, contrast = 0.6, hue = 0.2;
   bool running = false;
+  double lobes = 3, amplitude = 0.35;
 };
 
 struct MaterialDescription {
@@ -57,6 +58,7 @@ struct InstanceDescription {
   int mesh = 0, material = 0;
   Placement placement;
   glm::dvec3 scale{1.0}, tint{1.0};
+  std::vector<glm::dvec3> cubes;  ///< never resized once it is read: parameters write the points
 };
 
 struct LightDescription {

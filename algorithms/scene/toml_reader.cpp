@@ -157,7 +157,11 @@ void TableReader::integer(std::string_view key, double& value, NumberRange range
 void TableReader::components(std::string_view key, double* values, std::size_t count, NumberRange range, bool integer,
                              bool one_for_all, std::string_view names, Need need) {
   const toml::node* node = find(key, need);
-  const std::string shown = dotted(key);
+  components(dotted(key), node, values, count, range, integer, one_for_all, names);
+}
+
+void TableReader::components(const std::string& shown, const toml::node* node, double* values, std::size_t count,
+                             NumberRange range, bool integer, bool one_for_all, std::string_view names) {
   const std::string letters = fmt::format("{}", fmt::join(names.begin(), names.end(), ", "));
   std::vector<double*> all;
   std::vector<const toml::node*> nodes(count, node);
@@ -212,6 +216,18 @@ void TableReader::pair(std::string_view key, glm::dvec2& value, NumberRange rang
   for (std::size_t i = 0; i < 2; ++i)
     values[i] = scalar(*array->get(i), dotted(key), range, integers);
   value = {values[0], values[1]};
+}
+
+void TableReader::points(std::string_view key, std::vector<glm::dvec3>& values, NumberRange range, std::size_t most) {
+  const toml::node* node = find(key, Need::optional);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) fail(place_of(*node), wrong_type(dotted(key), "a list of points [[x, y, z], …]", *node));
+  if (array->empty() || array->size() > most)
+    fail(place_of(*node), fmt::format("{} must have 1 to {} points, not {}", dotted(key), most, array->size()));
+  values.resize(array->size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    components(fmt::format("{}[{}]", dotted(key), i), array->get(i), &values[i].x, 3, range, false, false, "xyz");
 }
 
 void TableReader::boolean(std::string_view key, bool& value) {

@@ -111,6 +111,8 @@ class TableReader {
   void extent(std::string_view key, glm::dvec3& value, NumberRange, bool integers, Need = Need::optional);
   /// [min, max]
   void pair(std::string_view key, glm::dvec2& value, NumberRange, bool integers, Need = Need::optional);
+  /// [[x, y, z], …]: one to `most` points, which drives know as key[0].x and so on. `values` must keep its size.
+  void points(std::string_view key, std::vector<glm::dvec3>& values, NumberRange, std::size_t most);
   void boolean(std::string_view key, bool& value);
   void text(std::string_view key, std::string& value, Need = Need::optional);
   /// A text that is one of `choices`; returns its position.
@@ -138,6 +140,8 @@ class TableReader {
   double scalar(const toml::node&, const std::string& shown, NumberRange, bool integer) const;
   void components(std::string_view key, double* values, std::size_t count, NumberRange, bool integer, bool one_for_all,
                   std::string_view names, Need);
+  void components(const std::string& shown, const toml::node*, double* values, std::size_t count, NumberRange,
+                  bool integer, bool one_for_all, std::string_view names);
   void add_target(std::string path, std::vector<double*> numbers, NumberRange, bool integer, const toml::node*);
 
   const SceneFile* file_;

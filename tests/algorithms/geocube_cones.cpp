@@ -45,7 +45,7 @@ std::vector<Shape> shapes() {
            [axes](const glm::dvec3& u) { return ellipsoid_radius(u, axes); },
            {0.2, 0.1, -0.3}},
           {"box", make_box({1.6F, 1.0F, 2.0F}), box, {0.1, 0.05, -0.2}},
-          {"star", make_radial(star_radius, 48), star_radius, {0.05, 0.02, 0.1}}};
+          {"star", make_star({}, 168), star_radius, {0.05, 0.02, 0.1}}};
 }
 
 // How far a point lies outside, as a share of the radius there; negative inside.

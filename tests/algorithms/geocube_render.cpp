@@ -69,7 +69,7 @@ TEST(GeocubeRender, ABallAndAnUnevenlyScaledOneAreAsTraced) {
 
 TEST(GeocubeRender, MorePreciseCubesAreNearerToTheTruth) {
   const Settings coarse = settings({{"resolution", "8"}}), fine = settings({{"resolution", "64"}});
-  const auto scene = [] { return glass_scene(test::make_radial(test::star_radius, 24)); };
+  const auto scene = [] { return glass_scene(make_star({}, 84)); };
   SurfaceOptions options;
   options.reflections = 1;
   const Image reference = truth(scene(), fine, options);

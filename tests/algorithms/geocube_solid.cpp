@@ -19,7 +19,6 @@
 namespace pellucid::geocube {
 namespace {
 
-using test::make_radial;
 using test::message_of;
 
 bool contains_text(const std::string& text, const std::string& part) {
@@ -158,7 +157,7 @@ TEST(GeocubeLayers, EveryIntervalAlongADirectionIsKept) {
 }
 
 TEST(GeocubePlacement, FewCentresSeeATorusAndAStar) {
-  const Solid star(make_radial(test::star_radius, 24));
+  const Solid star(make_star({}, 84));
   const Placement one = place_cubes(star, {.cubes = 1, .candidates = 200, .samples = 600});
   ASSERT_EQ(one.centers.size(), 1U);
   EXPECT_LT(one.unseen[0], 0.01);

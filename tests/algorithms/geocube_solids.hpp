@@ -65,11 +65,9 @@ inline double ellipsoid_radius(const glm::dvec3& u, const glm::dvec3& axes) {
   return 1 / glm::length(u / axes);
 }
 
-/// A star of three lobes about the z axis.
+/// Of the scene's shape as it is by default: three lobes about the y axis.
 inline double star_radius(const glm::dvec3& u) {
-  const double rho2 = u.x * u.x + u.y * u.y;
-  const double cos3 = rho2 > 0 ? u.x * (u.x * u.x - 3 * u.y * u.y) / std::pow(rho2, 1.5) : 0;
-  return 1 + 0.35 * cos3 * rho2;
+  return pellucid::star_radius({}, u);
 }
 
 inline glm::dvec3 random_direction(Random& random) {

@@ -136,6 +136,37 @@ TEST(ProceduralShapes, TorusMatchesPappus) {
   EXPECT_NEAR(area(mesh), 4.0 * kPi * kPi * 0.25, 5e-3);
 }
 
+TEST(ProceduralShapes, StarsAreSoundClosedAndAsLargeAsTheFormulaSays) {
+  for (const StarOptions& options : {StarOptions{}, StarOptions{1.5F, 7, 0.2F}, StarOptions{0.5F, 1, 0.8F}}) {
+    const Mesh mesh = make_star(options, 256);
+    expect_sound(mesh, 0.5);
+    expect_closed(mesh);
+    // r³/3 over all directions: odd powers of the cosine vanish.
+    const double r = static_cast<double>(options.radius), a = static_cast<double>(options.amplitude);
+    EXPECT_NEAR(volume(mesh), r * r * r * kPi * (4.0 / 3.0 + 16.0 / 15.0 * a * a), 0.004 * r * r * r);
+  }
+  const Mesh ball = make_star({2.0F, 5, 0.0F}, 32);
+  for (std::size_t i = 0; i < ball.positions.size(); ++i)
+    EXPECT_LT(glm::distance(ball.positions[i], 2.0F * ball.normals[i]), 1e-6F);
+}
+
+TEST(ProceduralShapes, AStarsNormalsAreTheSlopeOfItsSurface) {
+  const StarOptions options{0.8F, 4, 0.45F};
+  const Mesh mesh = make_star(options, 40);
+  const auto field = [&](const glm::dvec3& p) { return glm::length(p) - star_radius(options, glm::normalize(p)); };
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const glm::dvec3 p(mesh.positions[i]);
+    EXPECT_NEAR(field(p), 0, 1e-6);
+    glm::dvec3 slope(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 step(0.0);
+      step[axis] = 1e-5;
+      slope[axis] = (field(p + step) - field(p - step)) / 2e-5;
+    }
+    EXPECT_LT(glm::distance(glm::dvec3(mesh.normals[i]), glm::normalize(slope)), 1e-4) << i;
+  }
+}
+
 TEST(ProceduralShapes, PlaneFacesUp) {
   const Mesh mesh = make_plane({2, 3}, 4);
   EXPECT_EQ(mesh.triangles.size(), 32U);

@@ -68,8 +68,8 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
       // objects
       {"[meshes.a]\n", "5:1: 'shape' is missing in meshes.a"},
       {"[meshes.a]\nshape = \"sfere\"\n",
-       "6:9: meshes.a.shape = 'sfere' is not one of sphere, box, plane, cylinder, cone, torus, teapot, relief, tiles; "
-       "did you mean 'sphere'?"},
+       "6:9: meshes.a.shape = 'sfere' is not one of sphere, box, plane, cylinder, cone, torus, star, teapot, relief, "
+       "tiles; did you mean 'sphere'?"},
       {"[meshes.a]\nshape = \"sphere\"\nsegments = 2\n", "7:12: meshes.a.segments = 2 is out of range [3, 2048]"},
       {"[meshes.a]\nshape = \"sphere\"\nsegments = 8.5\n", "7:12: meshes.a.segments must be an integer, not a number"},
       {"[meshes.a]\nshape = \"box\"\nradius = 2\n", "7:1: unknown key 'radius' in meshes.a; known are shape, size"},
@@ -87,6 +87,8 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
       {"[meshes.ball]\nshape = \"sphere\"\n[materials.red]\n[instances.i]\nmesh = \"ball\"\nmaterial = "
        "\"red\"\nrotation_axis = [0, 0, 0]\n",
        "8:1: rotation_axis must not be zero"},
+      {"[meshes.a]\nshape = \"star\"\namplitude = 1\n", "7:13: meshes.a.amplitude = 1 is out of range [0, 0.9]"},
+      {"[meshes.a]\nshape = \"star\"\nlobes = 2.5\n", "7:9: meshes.a.lobes must be an integer, not a number"},
       {"[forest]\ntrees = -1\n", "6:9: forest.trees = -1 is out of range [0, 100000]"},
       // lights
       {"[lights.a]\nintensity = 1\n", "5:1: 'kind' is missing in lights.a"},
@@ -238,6 +240,27 @@ TEST_F(SceneErrors, FilesThatCannotBeReadAreNamedWhereTheyAreUsed) {
   EXPECT_EQ(error_of(sky), "6:9: environment.image: an environment is scene-linear: an EXR file, not PNG");
   EXPECT_EQ(error_of(std::string(kSound) + "[meshes.m]\nfile = \"asset:none/m.off\"\n").substr(0, 38),
             "6:8: asset 'none/m.off' is missing (lo");
+}
+
+TEST_F(SceneErrors, CubesPlacedByHand) {
+  constexpr std::string_view kBall =
+      "[meshes.ball]\nshape = \"sphere\"\n[materials.red]\n[instances.i]\nmesh = \"ball\"\nmaterial = \"red\"\n";
+  const Case cases[] = {
+      {"cubes = [0, 0, 0]\n", "11:10: instances.i.cubes[0] must be [x, y, z], not an integer"},
+      {"cubes = 3\n", "11:9: instances.i.cubes must be a list of points [[x, y, z], …], not an integer"},
+      {"cubes = []\n", "11:9: instances.i.cubes must have 1 to 16 points, not 0"},
+      {"cubes = [[0, 0, 0], [0, 1]]\n", "11:21: instances.i.cubes[1] must have 3 numbers [x, y, z], not 2"},
+      {"cubes = [[0, 0, 0], [0, nan, 0]]\n", "11:25: instances.i.cubes[1].y = nan is out of range [-1000000, 1000000]"},
+      {"cube = [[0, 0, 0]]\n", "11:1: unknown key 'cube' in instances.i; did you mean 'cubes'?"},
+  };
+  for (const auto& [text, message] : cases) {
+    EXPECT_EQ(error_of(std::string(kSound) + std::string(kBall) + std::string(text)), message) << text;
+  }
+  std::string many = "cubes = [";
+  for (int i = 0; i < 17; ++i)
+    many += "[0, 0, 0], ";
+  EXPECT_EQ(error_of(std::string(kSound) + std::string(kBall) + many + "]\n"),
+            "11:9: instances.i.cubes must have 1 to 16 points, not 17");
 }
 
 }  // namespace

@@ -1,3 +1,7 @@
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "algorithms/scene/scene.hpp"
@@ -55,6 +59,51 @@ TEST_F(SceneParameters, TimeIsBuiltIn) {
   Scene own = load("time_s = { default = 1, range = [0, 8] }\n");
   EXPECT_EQ(own.parameters().infos()[0].max, 8);
   EXPECT_EQ(own.parameters().get("time_s"), Value(1.0));
+}
+
+TEST_F(SceneParameters, MoveCubesPlacedByHand) {
+  const auto text = [](const char* cubes) {
+    return fmt::format(R"(title = "t"
+[views.front]
+eye = [0, 0, 5]
+target = [0, 0, 0]
+[materials.glass]
+kind = "dielectric"
+[meshes.star]
+shape = "star"
+lobes = 5
+segments = 40
+[instances.star]
+mesh = "star"
+material = "glass"
+cubes = {}
+[instances.other]
+mesh = "star"
+material = "glass"
+[parameters]
+x = {{ default = 0.25, range = [-1, 1], doc = "d", drives = ["instances.star.cubes[1].x"] }}
+)",
+                       cubes);
+  };
+  Scene scene = load_scene(write("c.toml", text("[[0.1, 0.2, 0.3], [0.25, -0.5, 0]]")).string());
+  EXPECT_EQ(scene.instances[0].cubes, (std::vector<glm::vec3>{{0.1F, 0.2F, 0.3F}, {0.25F, -0.5F, 0.0F}}));
+  EXPECT_TRUE(scene.instances[1].cubes.empty());
+  const std::string before = scene.content_hash();
+  scene.parameters().assign("x", -0.5, "scene c");
+  EXPECT_EQ(scene.instances[0].cubes, (std::vector<glm::vec3>{{0.1F, 0.2F, 0.3F}, {-0.5F, -0.5F, 0.0F}}));
+  EXPECT_NE(scene.content_hash(), before);
+  scene.parameters().assign("x", 0.25, "scene c");
+  EXPECT_EQ(scene.content_hash(), before);
+  const Scene moved = load_scene(write("c.toml", text("[[0.1, 0.2, 0.4], [0.25, -0.5, 0]]")).string());
+  EXPECT_NE(moved.content_hash(), before);
+  try {
+    load_scene(write("c.toml", text("[[0.1, 0.2, 0.3]]")).string());
+    ADD_FAILURE() << "there is no second cube to drive";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("'instances.star.cubes[1].x' is nothing that can be driven"),
+              std::string::npos)
+        << e.what();
+  }
 }
 
 TEST_F(SceneParameters, AreDescribed) {
