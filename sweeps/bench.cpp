@@ -216,9 +216,9 @@ std::optional<BenchRatio> block_ratio(const std::vector<double>& a, const std::v
   return BenchRatio{quantile(ratios, 0.5), ci95};
 }
 
-void time_subjects(const std::array<FrameClock::Draw, 3>& subjects, int frames, BenchResult& result) {
-  std::array<std::vector<double>, 3> samples;
-  FrameClock clock;
+std::vector<std::vector<double>> time_in_turn(std::span<const FrameClock::Draw> subjects, int frames, FrameClock& clock,
+                                              ReferenceTracer* reference) {
+  std::vector<std::vector<double>> samples(subjects.size());
   for (const FrameClock::Draw& subject : subjects) {
     WarmUp warm_up(kWarmUpFrames, kWarmUpSeconds / static_cast<double>(subjects.size()));
     std::vector<double> times;
@@ -228,17 +228,30 @@ void time_subjects(const std::array<FrameClock::Draw, 3>& subjects, int frames, 
       warm_up.add(times.back());
     }
   }
+  if (reference != nullptr) {
+    reference->trace();
+    reference->forget();
+  }
   const int blocks = (frames + BenchResult::kBlockFrames - 1) / BenchResult::kBlockFrames;
   for (int block = 0; block < blocks; ++block) {
     for (std::size_t i = 0; i < subjects.size(); ++i) {
       clock.draw(subjects[i], nullptr);  // the first finds the other's textures in the caches
       for (int frame = 0; frame < BenchResult::kBlockFrames; ++frame)
         clock.draw(subjects[i], &samples[i]);
+      if (i > 0 || reference == nullptr) continue;
+      clock.drain();
+      reference->trace();
     }
   }
   clock.drain();
+  return samples;
+}
 
-  result.frames = blocks * BenchResult::kBlockFrames;
+void time_subjects(const std::array<FrameClock::Draw, 3>& subjects, int frames, ReferenceTracer* reference,
+                   BenchResult& result) {
+  FrameClock clock;
+  const std::vector<std::vector<double>> samples = time_in_turn(subjects, frames, clock, reference);
+  result.frames = static_cast<int>(samples[0].size());
   result.clock = gl::name(clock.clock());
   result.method = summarise(samples[0]);
   result.bare = summarise(samples[1]);
@@ -247,13 +260,17 @@ void time_subjects(const std::array<FrameClock::Draw, 3>& subjects, int frames, 
   assert(ratio);  // every time is positive
   result.ratio = *ratio;
   result.own = block_ratio(samples[0], samples[1], samples[2], BenchResult::kBlockFrames);
+  if (reference != nullptr) result.reference = reference->against(samples[0], BenchResult::kBlockFrames);
+}
+
+void check_frames(const BenchRequest& request) {
+  if (request.frames >= 2 * BenchResult::kBlockFrames) return;
+  throw InputError(fmt::format("bench: frames = {} is below {}, the least that has an interval", request.frames,
+                               2 * BenchResult::kBlockFrames));
 }
 
 BenchResult bench_sampling_hulls(const BenchRequest& request, nlohmann::json& recipe) {
-  if (request.frames < 2 * BenchResult::kBlockFrames) {
-    throw InputError(fmt::format("bench: frames = {} is below {}, the least that has an interval", request.frames,
-                                 2 * BenchResult::kBlockFrames));
-  }
+  check_frames(request);
   RenderSession session(load_scene(request.scene), kTechnique, request.view, request.width, request.height);
   ShadowSettings shadow;
   constexpr std::string_view kShadowPrefix = "shadow.";
@@ -289,7 +306,7 @@ BenchResult bench_sampling_hulls(const BenchRequest& request, nlohmann::json& re
   const std::array<FrameClock::Draw, 3> subjects{[&](gl::PassTimer& timer) { session.render(timer); },
                                                  [&](gl::PassTimer& timer) { bare.render(timer, true); },
                                                  [&](gl::PassTimer& timer) { bare.render(timer, false); }};
-  time_subjects(subjects, request.frames, result);
+  time_subjects(subjects, request.frames, nullptr, result);
   return result;
 }
 

@@ -23,6 +23,7 @@ struct BenchRequest {
   int height = 540;
   std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, as RenderSession::assign_text takes
   int frames = 60;                                            ///< timed of each subject, rounded up to whole blocks
+  bool reference = true;                                      ///< time the reference's tracing too, where there is one
 };
 
 /// Of blocks that alternate between the subjects, so that a drift of the clock rate reaches them all: the median over
@@ -30,6 +31,17 @@ struct BenchRequest {
 struct BenchRatio {
   double median = 0;
   Interval ci95;
+};
+
+/// The ground truth of the same picture by ray tracing on all cores of the processor: one tree of rays through each
+/// pixel's centre, which follows as many interfaces as the frame shows. One picture is traced between any two blocks.
+struct BenchReference {
+  TimingSummary trace;        ///< tracing and shading alone
+  double build_ms = 0;        ///< Embree's hierarchy, which `trace` leaves out, as a frame leaves out its preparation
+  BenchRatio ratio;           ///< trace / method
+  double rays_per_pixel = 0;  ///< with those to the lights
+  int depth = 0;              ///< interfaces along a path, at most
+  int reflections = 0;        ///< inside a dielectric, at most
 };
 
 struct BenchResult {
@@ -43,6 +55,7 @@ struct BenchResult {
   double blends_per_pixel = 0;    ///< front faces that passed the depth test, over all pixels of the image
   int fetches_per_blend = 0;      ///< of the bare shader; an upper bound of the method's where light is shadowed
   double fetches_per_pixel = 0;   ///< their product
+  std::optional<BenchReference> reference;  ///< nothing where it is not asked for, or there is none
 };
 
 /// Throws InputError for a request that cannot be met, RuntimeError when the clock gives no usable time. Needs a

@@ -71,13 +71,28 @@ class ImpostorFrame {
   gl::Framebuffer framebuffer_;
 };
 
+// As far as the frame follows light: into an object, `internal` times on inside, out, and on by the pictures of the
+// other objects in its maps, each of which shows one object more.
+SurfaceOptions reference_options(const Scene& scene, const LookupSettings& lookup, const MapSettings& maps) {
+  int objects = 0;
+  bool solid = false;
+  for (const Instance& instance : scene.instances) {
+    if (!optical(scene, instance)) continue;
+    ++objects;
+    solid = solid || scene.materials[static_cast<std::size_t>(instance.material)].kind == SurfaceKind::dielectric;
+  }
+  SurfaceOptions options;
+  options.both_sides = lookup.bounces > 1;
+  options.reflections = options.both_sides ? lookup.internal : 0;
+  const int of_one = solid && options.both_sides ? 2 + lookup.internal : 1;
+  options.depth = of_one * (objects > 1 ? 1 + maps.mutual : 1);
+  return options;
+}
+
 }  // namespace
 
 BenchResult bench_distance_impostors(const BenchRequest& request, nlohmann::json& recipe) {
-  if (request.frames < 2 * BenchResult::kBlockFrames) {
-    throw InputError(fmt::format("bench: frames = {} is below {}, the least that has an interval", request.frames,
-                                 2 * BenchResult::kBlockFrames));
-  }
+  check_frames(request);
   // The session checks scene, view and settings, and says which values they lead to.
   RenderSession session(load_scene(request.scene), kName, request.view, request.width, request.height);
   Parameters parameters;
@@ -106,6 +121,7 @@ BenchResult bench_distance_impostors(const BenchRequest& request, nlohmann::json
   const LookupSettings lookup = lookup_settings(parameters);
   const gl::Format format = session.color().format();
   ImpostorFrame method(scene, camera, maps, lookup, false, format), bare(scene, camera, maps, lookup, true, format);
+  ReferenceTracer reference(scene, camera, reference_options(scene, lookup, maps));
   BenchResult result;
   result.blends_per_pixel = method.count_pixels() / (static_cast<double>(request.width) * request.height);
   result.fetches_per_blend = fetches(lookup.search) + 1;
@@ -113,7 +129,7 @@ BenchResult bench_distance_impostors(const BenchRequest& request, nlohmann::json
   time_subjects({[&](gl::PassTimer& timer) { method.render(timer, true); },
                  [&](gl::PassTimer& timer) { bare.render(timer, true); },
                  [&](gl::PassTimer& timer) { bare.render(timer, false); }},
-                request.frames, result);
+                request.frames, request.reference ? &reference : nullptr, result);
   return result;
 }
 

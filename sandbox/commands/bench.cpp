@@ -21,6 +21,7 @@ namespace {
 
 using nlohmann::ordered_json;
 using sweeps::BenchRatio;
+using sweeps::BenchReference;
 using sweeps::BenchResult;
 using sweeps::TimingSummary;
 
@@ -30,6 +31,7 @@ struct Options {
   int frames = sweeps::BenchRequest{}.frames;
   std::optional<int> device;
   bool vtk = true;
+  bool reference = true;
   bool json = false;
 };
 
@@ -94,6 +96,25 @@ void print_vtk(const AgainstVtk& against) {
              r.sample_distance_m, r.equal() ? "" : ", its least: it does not come down to the frame's");
 }
 
+ordered_json reference_json(const std::optional<BenchReference>& reference) {
+  if (!reference) return nullptr;
+  return {{"trace", time_json(reference->trace)},
+          {"build_ms", reference->build_ms},
+          {"ratio", ratio_json(reference->ratio)},
+          {"rays_per_pixel", reference->rays_per_pixel},
+          {"depth", reference->depth},
+          {"reflections", reference->reflections}};
+}
+
+void print_reference(const BenchReference& reference) {
+  print_time("the reference's tracing", reference.trace);
+  print_ratio("reference / frame", reference.ratio);
+  fmt::print(
+      "  {:<34} {:9.3f}     one tree a pixel, up to {} interface{} along a path; without building the hierarchy "
+      "({:.3g} ms)\n",
+      "rays per pixel", reference.rays_per_pixel, reference.depth, reference.depth == 1 ? "" : "s", reference.build_ms);
+}
+
 int bench(const Options& options) {
   const Size size = parse_size(options.size);
   const TechniqueInfo& info = find_technique(options.technique);
@@ -103,7 +124,7 @@ int bench(const Options& options) {
         fmt::format("bench: there is no bare shader of {}, only of sampling_hulls and distance_impostors", info.name));
   }
   const std::string scene = !options.scene.empty() ? options.scene : hulls ? "fog_forest" : "mirror_room";
-  sweeps::BenchRequest request{scene, options.view, size.width, size.height, {}, options.frames};
+  sweeps::BenchRequest request{scene, options.view, size.width, size.height, {}, options.frames, options.reference};
   for (const std::string& setting : options.settings)
     request.settings.push_back(parse_assignment(setting));
   gl::Context context({.device = options.device});
@@ -124,6 +145,7 @@ int bench(const Options& options) {
     out["blends_per_pixel"] = result.blends_per_pixel;
     out["fetches_per_blend"] = result.fetches_per_blend;
     out["fetches_per_pixel"] = result.fetches_per_pixel;
+    out["reference"] = reference_json(result.reference);
     out["against_vtk"] = vtk_json(vtk);
     out["device"] = context.device().renderer;
     out["driver"] = context.device().version;
@@ -149,6 +171,7 @@ int bench(const Options& options) {
   fmt::print("  {:<34} {:9.3f}\n", "blends per pixel", result.blends_per_pixel);
   fmt::print("  {:<34} {:9.3f}     {} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
              result.fetches_per_blend);
+  if (result.reference) print_reference(*result.reference);
   if (hulls) print_vtk(vtk);
   fmt::print("on {}, clock {}\n", context.device().renderer, result.clock);
   return kDone;
@@ -159,7 +182,9 @@ int bench(const Options& options) {
 void add_bench(CLI::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand(
-      "bench", "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK");
+      "bench",
+      "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK or "
+      "ray tracing");
   app->add_option("technique", options->technique, "The technique: sampling_hulls or distance_impostors")->required();
   app->add_option("--scene", options->scene,
                   "A scene's name (pellucid list scenes) or a .toml file; fog_forest or mirror_room without it");
@@ -173,6 +198,7 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
       ->check(CLI::Range(2 * BenchResult::kBlockFrames, 100000))
       ->capture_default_str();
   app->add_flag("!--no-vtk", options->vtk, "Leave out the comparison with VTK's GPU ray casting");
+  app->add_flag("!--no-reference", options->reference, "Leave out the comparison with ray tracing");
   app->add_option("--device", options->device, "EGL device (pellucid devices)");
   app->add_flag("--json", options->json, "Print the measurement as JSON");
   app->footer(
@@ -184,7 +210,10 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
       "machines or runs do not compare.\n"
       "Against VTK the scene's volume is drawn alone and white over black, and VTK's sample distance is the longest "
       "at\n"
-      "which its error against the reference is no larger than the technique's. VTK needs no display for it.");
+      "which its error against the reference is no larger than the technique's. VTK needs no display for it.\n"
+      "Against ray tracing (distance_impostors) the reference traces the same picture between the blocks, one tree of "
+      "rays\n"
+      "a pixel on all cores of the processor, following light as far as the frame does.");
   commands.push_back({app, [options] { return bench(*options); }});
 }
 

@@ -117,8 +117,39 @@ TEST_F(Bench, TimesDistanceImpostors) {
   EXPECT_EQ(row.at("fetches_per_blend"), 6);  // r, p, three of l, and the radiance
   EXPECT_GT(row.at("blends_per_pixel").get<double>(), 0.01);
   EXPECT_LT(row.at("blends_per_pixel").get<double>(), 0.2);
+  // Between any two blocks the reference traces the same picture: a ray a pixel, the ball's, and those to the lamps.
+  const json& reference = row.at("reference");
+  expect_interval(reference.at("trace"), "frame_ms_median", "frame_ms_ci95_low", "frame_ms_ci95_high");
+  expect_interval(reference.at("ratio"), "median", "ci95_low", "ci95_high");
+  EXPECT_GT(reference.at("rays_per_pixel").get<double>(), 1);
+  EXPECT_LT(reference.at("rays_per_pixel").get<double>(), 4);
+  EXPECT_EQ(reference.at("depth"), 1);
+  EXPECT_EQ(reference.at("reflections"), 2);
+  const Outcome without = pellucid({"bench", "distance_impostors", "--size", "16x12", "--frames", "8", "-s",
+                                    "cube_size=64", "--no-reference", "--json"});
+  ASSERT_TRUE(succeeded(without));
+  EXPECT_TRUE(json::parse(without.out).at("reference").is_null());
   const Outcome shadows = pellucid({"bench", "distance_impostors", "-s", "shadow.size=64"});
   EXPECT_TRUE(refused(shadows, 2, {"shadow.size"}));
+}
+
+TEST_F(Bench, TracesAsDeepAsTheFrameShows) {
+  const auto reference = [](const Words& more) {
+    Words words{"bench", "distance_impostors", "--scene", "spheres_hall",      "--size", "16x12", "--frames", "8",
+                "-s",    "cube_size=64",       "-s",      "refractor_size=16", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = pellucid(words);
+    EXPECT_TRUE(succeeded(outcome));
+    return json::parse(outcome.out).at("reference");
+  };
+  // In, one reflection inside, out, and the same in the other ball's map.
+  const json both = reference({"-s", "internal_reflections=1"});
+  EXPECT_EQ(both.at("depth"), 6);
+  EXPECT_EQ(both.at("reflections"), 1);
+  const json front = reference({"-s", "bounces=1", "-s", "mutual=0"});
+  EXPECT_EQ(front.at("depth"), 1);
+  EXPECT_EQ(front.at("reflections"), 0);
+  EXPECT_LT(front.at("rays_per_pixel").get<double>(), both.at("rays_per_pixel").get<double>());
 }
 
 TEST_F(Bench, RefusesWhatItCannotTime) {

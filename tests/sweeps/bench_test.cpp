@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sweeps/bench_reference.hpp"
+
 namespace pellucid::sweeps {
 namespace {
 
@@ -48,6 +50,27 @@ TEST(BlockRatio, OutlivesOneBlockThatNoiseHides) {
   ASSERT_TRUE(ratio);
   EXPECT_DOUBLE_EQ(ratio->median, 2);
   EXPECT_DOUBLE_EQ(ratio->ci95.high, 2);
+}
+
+TEST(ReferenceTracer, SetsEachPictureAgainstTheFramesBesideIt) {
+  const Scene scene = load_scene("mirror_room");
+  const Camera camera{scene.find_view(""), 16, 12};
+  SurfaceOptions options;
+  options.depth = 1;
+  options.samples = 9;  // a pixel's centre is what a frame shows
+  ReferenceTracer tracer(scene, camera, options);
+  tracer.trace();
+  tracer.forget();
+  for (int i = 0; i < 3; ++i)
+    tracer.trace();
+  const BenchReference of_one = tracer.against(std::vector<double>(6, 1.0), 2);
+  EXPECT_GT(of_one.trace.median_ms, 0);
+  EXPECT_DOUBLE_EQ(of_one.ratio.median, of_one.trace.median_ms);
+  EXPECT_DOUBLE_EQ(tracer.against(std::vector<double>(6, 0.5), 2).ratio.median, 2 * of_one.ratio.median);
+  EXPECT_EQ(of_one.depth, 1);
+  EXPECT_GT(of_one.build_ms, 0);
+  EXPECT_GT(of_one.rays_per_pixel, 1);
+  EXPECT_LT(of_one.rays_per_pixel, 4) << "one sample a pixel";
 }
 
 }  // namespace
