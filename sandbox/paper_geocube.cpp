@@ -11,10 +11,13 @@ constexpr Words kPreviews[] = {"geocube_table2_preview", "geocube_figures_previe
 constexpr Words kSmooth[] = {"frame.supersampling=2"};
 constexpr Words kOneCube[] = {"frame.supersampling=2", "cubes=1"};
 constexpr Words kTwoCubes[] = {"frame.supersampling=2", "cubes=2"};
-constexpr Words kMiddle[] = {"frame.supersampling=2", "cubes=1", "placement=middle"};
+constexpr Words kTail[] = {"frame.supersampling=2", "cubes=1", "placement=hand"};
+constexpr Words kTailAndHead[] = {"frame.supersampling=2", "cubes=2", "placement=hand"};
 constexpr Words kLayers[] = {"frame.supersampling=2", "cubes=1", "layers=4"};
 constexpr Words kNoReflection[] = {"frame.supersampling=2", "cubes=1", "reflections=0"};
 constexpr Words kHighlight[] = {"cubes=1", "show=internal_reflection"};
+
+constexpr Words kMap = "exit_error";
 
 constexpr PaperPicture kFig1[] = {
     {"front_side", "(a)", "front_refraction", kSmooth, "Refraction where the ray enters, and nowhere else."},
@@ -23,17 +26,20 @@ constexpr PaperPicture kFig1[] = {
     {"highlighted", "(c)", "geocube", kHighlight, "Where light is totally reflected inside."},
 };
 constexpr PaperPicture kFig12[] = {
-    {"two_cubes", "", "geocube", kTwoCubes, "Two cubes, as in the paper; ours are placed automatically."},
+    {"by_hand", "", "geocube", kTailAndHead, "Two cubes as in the paper, near the tail and inside the head."},
+    {"two_cubes", "", "geocube", kTwoCubes, "Two cubes, placed automatically."},
     {"screen_space", "", "screen_space_refraction", kSmooth,
      "Not in the paper: Wyman 2005, in the space of the screen."},
 };
 constexpr PaperPicture kFig16Head[] = {
-    {"geocube", "(a)", "geocube", kOneCube, "One cube of 64×64×6 texels; (b) is the reference."},
+    {"geocube", "(a)", "geocube", kOneCube, "One cube of 64×64×6 texels; (b) is the reference.", kMap},
 };
 constexpr PaperPicture kFig16Bunny[] = {
-    {"middle", "(c)", "geocube", kMiddle, "One cube in the middle, which does not see the ears; (d) is the reference."},
-    {"two_cubes", "", "geocube", kTwoCubes, "Two cubes, placed automatically."},
-    {"layers", "", "geocube", kLayers, "Beyond the paper: one cube of four layers."},
+    {"uncovered", "(c)", "geocube", kTail,
+     "One cube near the tail, which sees neither the ears nor all of the head; (d) is the reference.", kMap},
+    {"by_hand", "", "geocube", kTailAndHead, "With a second one inside the head.", kMap},
+    {"two_cubes", "", "geocube", kTwoCubes, "Two cubes, placed automatically.", kMap},
+    {"layers", "", "geocube", kLayers, "Beyond the paper: one cube of four layers.", kMap},
 };
 
 constexpr PaperPictures figure(Words name, Words title, Words scene, std::span<const PaperPicture> pictures,
@@ -58,7 +64,7 @@ constexpr PaperPictures kPictures[] = {
     figure("fig1", "Fig. 1: a glass head", "glass_head", kFig1, "both_sides"),
     figure("fig12", "Fig. 12: a bunny that absorbs light", "glass_bunny", kFig12, "two_cubes"),
     figure("fig16a", "Fig. 16 (a) and (b): the head against ray tracing", "glass_head", kFig16Head, "geocube"),
-    figure("fig16c", "Fig. 16 (c) and (d): the bunny against ray tracing", "glass_bunny", kFig16Bunny, "middle"),
+    figure("fig16c", "Fig. 16 (c) and (d): the bunny against ray tracing", "glass_bunny", kFig16Bunny, "uncovered"),
 };
 
 }  // namespace

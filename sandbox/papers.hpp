@@ -14,6 +14,7 @@ struct PaperPicture {
   std::string_view technique;
   std::span<const std::string_view> settings;  ///< name=value, besides those of the set
   std::string_view role;                       ///< one sentence: why it is here
+  std::string_view map{};  ///< which of the technique's errors by pixel is shown too (Technique::native_maps)
 };
 
 /// A figure of pictures, or the part of one that shows one view of one scene: drawn several ways and compared with one

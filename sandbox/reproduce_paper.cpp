@@ -227,6 +227,10 @@ ordered_json to_json(const PaperOutcome& outcome) {
                          {"kept", picture.kept}};
       for (const auto& [metric, value] : picture.metrics)
         entry[metric] = value;
+      if (!picture.native_exr.empty()) {
+        entry["map"] = set.folder + "/" + picture.native_exr;
+        entry[set.drawn.native_name + "_mean"] = picture.native_mean;
+      }
       out["pictures"].push_back(std::move(entry));
     }
   }

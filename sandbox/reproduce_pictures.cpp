@@ -15,6 +15,7 @@
 #include "gl/display.hpp"
 #include "gl/error.hpp"
 #include "plots/close_up.hpp"
+#include "plots/false_color.hpp"
 #include "sandbox/commands/arguments.hpp"
 #include "sandbox/self.hpp"
 #include "sweeps/metrics/flip.hpp"
@@ -76,13 +77,19 @@ std::string outdated(const ImageFile& file, const Wanted& wanted) {
   return "";
 }
 
-// The file at `path`, made by `command` unless it is there and as wanted.
-ImageFile make(const std::filesystem::path& path, const std::vector<std::string>& command, const Wanted& wanted,
-               const PictureOptions& options, DrawnPicture& picture) {
-  std::error_code error;
-  std::string why;
-  std::optional<ImageFile> file;
-  if (std::filesystem::exists(path, error)) {
+/// A file of a picture.
+struct Product {
+  std::filesystem::path path;
+  Wanted wanted;
+  std::optional<ImageFile> file;  ///< as it was found, damaged ones left out
+  std::string why;                ///< it cannot stay; empty when it can or is not there
+
+  bool good() const { return file && why.empty(); }
+  void look() {
+    std::error_code error;
+    why.clear();
+    file.reset();
+    if (!std::filesystem::exists(path, error)) return;
     try {
       file = read_image(path);
       why = outdated(*file, wanted);
@@ -90,19 +97,30 @@ ImageFile make(const std::filesystem::path& path, const std::vector<std::string>
       why = "it is damaged";
     }
   }
-  picture.kept = file && why.empty();
+};
+
+// The files, made by one `command` unless all are there and as wanted.
+void make(std::vector<Product>& products, const std::vector<std::string>& command, const PictureOptions& options,
+          DrawnPicture& picture) {
+  const auto good = [](const Product& product) { return product.good(); };
+  for (Product& product : products)
+    product.look();
+  picture.kept = std::all_of(products.begin(), products.end(), good);
   if (!picture.kept) {
-    options.say(fmt::format("{}{}", path.filename().string(), why.empty() ? "" : fmt::format(" again: {}", why)));
+    const auto bad = std::find_if_not(products.begin(), products.end(), good);
+    options.say(fmt::format("{}{}", bad->path.filename().string(), bad->why.empty() ? "" : " again: " + bad->why));
     run_pellucid(command);
-    file = read_image(path);
-    if (const std::string flaw = outdated(*file, wanted); !flaw.empty())
-      throw RuntimeError(fmt::format("{} is not what was asked for: {}", path.string(), flaw));
+    for (Product& product : products) {
+      product.look();
+      if (product.good()) continue;
+      throw RuntimeError(fmt::format("{} is not what was asked for: {}", product.path.string(),
+                                     product.why.empty() ? "it is missing" : product.why));
+    }
   }
-  const json origin = attribute(*file, "pellucid.provenance");
+  const json origin = attribute(*products.front().file, "pellucid.provenance");
   picture.device = origin.value("device", "");
   picture.driver = origin.value("driver", "");
   picture.commit = origin.value("commit", "");
-  return std::move(*file);
 }
 
 json value_of(const std::string& text) {
@@ -165,6 +183,7 @@ class Drawing {
     compare();
     options_.say("PNG, error maps, close-ups");
     write_plain();
+    write_native();
     write_close_ups();
     return std::move(out_);
   }
@@ -209,7 +228,9 @@ class Drawing {
       wanted.recipe["samples"] = set_.samples;
       wanted.recipe["caustics"] = set_.caustics;
     }
-    truth_ = make(path(reference.exr), command, wanted, options_, reference);
+    std::vector<Product> products{{.path = path(reference.exr), .wanted = std::move(wanted), .file = {}, .why = {}}};
+    make(products, command, options_, reference);
+    truth_ = std::move(*products.front().file);
     const json error = attribute(truth_, "pellucid.reference_error");
     out_.step_error_max = error.value("step_error_max", 0.0);
     out_.step_error_mean = error.value("step_error_mean", 0.0);
@@ -231,12 +252,51 @@ class Drawing {
       command.insert(command.end(), {"-s", std::string(setting)});
     }
     add_place(command, picture.exr);
-    picture.repeat = shown(command);
     Wanted wanted{.command = "render", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
     wanted.recipe["technique"] = picture.technique;
     wanted.recipe["parameters"].update(parameters_of(recipe));
-    files_.push_back(make(path(picture.exr), command, wanted, options_, picture));
+    std::vector<Product> products{{.path = path(picture.exr), .wanted = wanted, .file = {}, .why = {}}};
+    if (!recipe.map.empty()) {
+      const std::string maps = picture.name + ".maps";
+      picture.native_exr = fmt::format("{}/{}.exr", maps, recipe.map);
+      picture.native_png = fmt::format("{}.{}.png", picture.name, recipe.map);
+      command.insert(command.end(), {"--maps", path(maps).string()});
+      wanted.command = "render --maps";
+      products.push_back({.path = path(picture.native_exr), .wanted = std::move(wanted), .file = {}, .why = {}});
+    }
+    picture.repeat = shown(command);
+    make(products, command, options_, picture);
+    files_.push_back(std::move(*products.front().file));
+    native_.push_back(products.size() > 1 ? std::move(products.back().file) : std::nullopt);
     out_.pictures.push_back(std::move(picture));
+  }
+
+  // The techniques' own errors, on one scale of their own.
+  void write_native() {
+    std::vector<const Image*> maps;
+    for (std::size_t i = 0; i < native_.size(); ++i) {
+      if (!native_[i]) continue;
+      const Image& map = native_[i]->image;
+      maps.push_back(&map);
+      const json what = attribute(*native_[i], "pellucid.map");
+      out_.native_name = what.value("name", "");
+      out_.native_doc = what.value("doc", "");
+      out_.native_unit = what.value("unit", "");
+      double sum = 0, count = 0;
+      for (const float value : map.pixels) {
+        if (!std::isfinite(value)) continue;
+        sum += static_cast<double>(value);
+        ++count;
+        out_.pictures[i].native_max = std::max(out_.pictures[i].native_max, static_cast<double>(value));
+      }
+      out_.pictures[i].native_mean = sum / std::max(count, 1.0);
+    }
+    if (maps.empty()) return;
+    out_.native_scale = out_.native_unit.empty() ? 1 : plots::color_range(maps);
+    for (std::size_t i = 0; i < native_.size(); ++i) {
+      if (native_[i])
+        write_png(path(out_.pictures[i].native_png), plots::false_colors(native_[i]->image, out_.native_scale));
+    }
   }
 
   void compare() {
@@ -313,6 +373,7 @@ class Drawing {
   ImageFile truth_;
   std::vector<ImageFile> files_;  // of the pictures, in their order
   std::vector<Image> maps_;
+  std::vector<std::optional<ImageFile>> native_;
 };
 
 }  // namespace

@@ -19,7 +19,9 @@ struct DrawnPicture {
   std::string technique;      ///< empty for the reference
   std::string settings_text;  ///< "sampling_hulls, hulls 2, samples 4"; empty for the reference
   std::string exr, png;
-  std::string map_exr, map_png;           ///< FLIP against the reference; empty for the reference itself
+  std::string map_exr, map_png;        ///< FLIP against the reference; empty for the reference itself
+  std::string native_exr, native_png;  ///< the technique's own error by pixel; empty where the paper asks for none
+  double native_mean = 0, native_max = 0;
   std::string close_png, stretched_png;   ///< the window of the close-up, enlarged; with stretched contrast
   std::map<std::string, double> metrics;  ///< flip_mean, flip_max, rmse; empty for the reference
   std::string repeat;                     ///< a command line that draws it alone
@@ -40,6 +42,8 @@ struct DrawnPictures {
   std::string close_up_of;  ///< label or name of the picture that placed it; empty: it was chosen by hand
   int enlarged = 0;         ///< factor of the close-up
   double map_scale = 0;     ///< the FLIP that the brightest colour of the maps stands for
+  double native_scale = 0;  ///< the same of the techniques' own errors; 0 without any
+  std::string native_name, native_doc, native_unit;
 };
 
 struct PictureOptions {

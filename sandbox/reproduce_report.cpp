@@ -177,6 +177,28 @@ ReportImage image(const std::string& folder, const DrawnPicture& picture, const 
           .caption = text};
 }
 
+// The techniques' own errors by pixel, where the paper's figure asks for them.
+void add_native_maps(const PicturesOutcome& outcome, ReportSection& section) {
+  const DrawnPictures& set = outcome.drawn;
+  if (set.native_scale == 0) return;
+  Gallery maps;
+  for (const DrawnPicture& picture : set.pictures) {
+    if (picture.native_exr.empty()) continue;
+    ReportImage map = image(outcome.folder, picture, picture.native_png,
+                            fmt::format("{}: {:.3g} in the mean, {:.3g} at most", picture.settings_text,
+                                        picture.native_mean, picture.native_max));
+    map.files = {{"PNG", outcome.folder + "/" + picture.native_png},
+                 {"EXR", outcome.folder + "/" + picture.native_exr}};
+    map.commands = {{"Draw it again", picture.repeat}};
+    maps.images.push_back(std::move(map));
+  }
+  section.blocks.emplace_back(Heading{"What the technique finds beside the truth"});
+  section.blocks.emplace_back(Paragraph{
+      fmt::format("{}: {}{}. Black is 0, pale yellow is {:.6g} and more, grey has no value.", set.native_name,
+                  set.native_doc, set.native_unit.empty() ? "" : ", in " + set.native_unit, set.native_scale)});
+  section.blocks.emplace_back(std::move(maps));
+}
+
 void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
   const DrawnPictures& set = outcome.drawn;
   const std::string& folder = outcome.folder;
@@ -220,6 +242,7 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
       fmt::format("FLIP's error maps on one scale: black is 0, pale yellow is {:.2f}. The EXR files hold the values.",
                   set.map_scale)});
   section.blocks.emplace_back(std::move(maps));
+  add_native_maps(outcome, section);
   section.blocks.emplace_back(Heading{fmt::format("Close-up, ×{}", set.enlarged)});
   const std::string why =
       set.close_up_of.empty()
