@@ -1,4 +1,5 @@
-// Table 2 of Chan and Wang 2005 (references.bib: chan2005), and the errors of the pictures of Figs. 1, 12 and 16.
+// Table 2 of Chan and Wang 2005 (references.bib: chan2005), the errors of the pictures of Figs. 1, 12 and 16, and what
+// each bound of Sec. 2.1 brings.
 #include <cstdint>
 
 #include <fmt/format.h>
@@ -73,6 +74,8 @@ const std::vector<Method>& methods() {
       {"screen space", "screen_space_refraction", {}},
       {"refractor map", "distance_impostors", {}},
       {"1 cube, middle", "middle", {}},
+      {"1 cube, by hand", "hand", {{"cubes", std::int64_t{1}}}},
+      {"2 cubes, by hand", "hand", {{"cubes", std::int64_t{2}}}},
       {"1 cube", "automatic", {{"cubes", std::int64_t{1}}}},
       {"2 cubes", "automatic", {{"cubes", std::int64_t{2}}}},
       {"5 cubes", "automatic", {{"cubes", std::int64_t{5}}}},
@@ -183,6 +186,75 @@ Table geocube_fig16(const TableInfo& info, const ChosenRows& chosen) {
     everywhere.insert(everywhere.end(), places.begin(), places.end());
   }
   table.notes.push_back(fmt::format("Paper: {}: pictures alone, no errors.", info.source));
+  add_notes(table, chosen, everywhere);
+  return table;
+}
+
+TableInfo geocube_bounds_info() {
+  return {.name = "geocube.bounds",
+          .title = "What cones A, B and C and sphere D bring",
+          .source = "Chan and Wang 2005, Sec. 2.1",
+          .spec = "geocube_curves"};
+}
+
+Table geocube_bounds(const TableInfo& info, const ChosenRows& all) {
+  const ChosenRows chosen = rows_of_blocks(all, {"bounds"});
+  Table table{.info = info, .rows = {}, .heading_rows = 1, .records = {}, .notes = {}, .sweep = chosen.sweep};
+  struct Set {
+    const char* cones;
+    const char* label;
+  };
+  static constexpr Set kSets[] = {{"none", ""},   {"a", "A"},     {"b", "B"},     {"c", "C"},
+                                  {"ab", "A, B"}, {"ac", "A, C"}, {"bc", "B, C"}, {"abc", "A, B, C"}};
+  static constexpr Quantity kShown[] = {{"mean exit error [diagonals]", "exit_error_mean"},
+                                        {"ends early", "early_share"},
+                                        {"bounded", "bounded_share"},
+                                        {"mean steps", "steps_mean"},
+                                        {"FLIP on the object", "flip_mean_mask"}};
+  std::vector<std::string> heading;
+  for (const Quantity& quantity : kShown)
+    heading.emplace_back(quantity.label);
+  heading.emplace_back("fps");
+  table.rows.push_back(words_row("Bounds used", heading));
+  std::vector<Place> everywhere;
+  for (const std::string scene : {"glass_bunny", "glass_torus"}) {
+    std::vector<Place> places;
+    std::vector<std::string> names;
+    bool any = false;
+    for (const Set& set : kSets) {
+      for (const bool sphere : {false, true}) {
+        const json* row =
+            find_row_of(chosen, "bounds", {{"scene", scene}, {"cones", std::string(set.cones)}, {"sphere", sphere}});
+        std::string label = set.label;
+        if (sphere) label += label.empty() ? "D" : ", D";
+        names.push_back(label.empty() ? "none, δ alone" : label);
+        places.push_back(make_place(fmt::format("{}: {}", scene, names.back()), row));
+        any = any || row != nullptr;
+      }
+    }
+    if (!any && !chosen.rows.empty()) continue;  // a preview has fewer scenes
+    // A row for each set of bounds: the quantities' rows turned by a quarter.
+    std::vector<TableRow> quantities;
+    for (const Quantity& quantity : kShown)
+      quantities.push_back(our_row("", places, 3, [&](const json& row) { return number(row, quantity.field); }));
+    quantities.push_back(fps_row("", places));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      TableRow row{places[i].name, {}, TableRow::all};
+      for (TableRow& quantity : quantities)
+        row.cells.push_back(std::move(quantity.cells[i]));
+      table.rows.push_back(std::move(row));
+      TableRecord record{{"bounds", names[i]},
+                         {"quantity", std::string("exit_error_mean")},
+                         {"paper", std::nullopt},
+                         {"ours", real_field(places[i], "exit_error_mean")},
+                         {"fps", real_field(places[i], "fps")}};
+      add_error_fields(record, places[i]);
+      add_origin(record, places[i], chosen.sweep);
+      table.records.push_back(std::move(record));
+    }
+    everywhere.insert(everywhere.end(), places.begin(), places.end());
+  }
+  table.notes.push_back(fmt::format("Paper: {}: no numbers.", info.source));
   add_notes(table, chosen, everywhere);
   return table;
 }

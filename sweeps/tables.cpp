@@ -33,7 +33,8 @@ const std::vector<Entry>& entries() {
                                       {distance_impostors_figure_info(7), &distance_impostors_fig7},
                                       {distance_impostors_rates_info(), &distance_impostors_rates},
                                       {geocube_table2_info(), &geocube_table2},
-                                      {geocube_fig16_info(), &geocube_fig16}};
+                                      {geocube_fig16_info(), &geocube_fig16},
+                                      {geocube_bounds_info(), &geocube_bounds}};
   return all;
 }
 

@@ -59,10 +59,55 @@ TEST(GeocubeTables, Fig16TellsMethodsAndScenesApart) {
       "geocube.fig16",
       {row("geocube_figures", "automatic", "geocube", "glass_bunny", {{"cubes", 2}, {"flip_mean_mask", 0.2}}),
        row("geocube_figures", "automatic", "geocube", "glass_bunny", {{"cubes", 5}, {"flip_mean_mask", 0.1}}),
+       row("geocube_figures", "hand", "geocube", "glass_bunny", {{"cubes", 2}, {"flip_mean_mask", 0.25}}),
        row("geocube_figures", "automatic", "geocube", "glass_torus", {{"cubes", 2}, {"flip_mean_mask", 0.3}})});
-  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(5).value, 0.2);
-  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(6).value, 0.1);
-  EXPECT_EQ(row_of(table, "FLIP on the object, glass_torus").cells.at(5).value, 0.3);
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(7).value, 0.2);
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(8).value, 0.1);
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_bunny").cells.at(5).value, 0.25);
+  EXPECT_EQ(row_of(table, "FLIP on the object, glass_torus").cells.at(7).value, 0.3);
+}
+
+TEST(GeocubeTables, BoundsTellsSetsAndScenesApart) {
+  std::vector<json> rows;
+  int n = 0;
+  for (const char* scene : {"glass_bunny", "glass_torus"}) {
+    for (const char* cones : {"none", "a", "abc"}) {
+      for (const bool sphere : {false, true}) {
+        ++n;
+        rows.push_back(row("geocube_curves", "bounds", "geocube", scene,
+                           {{"cones", cones},
+                            {"sphere", sphere},
+                            {"exit_error_mean", 0.01 * n},
+                            {"early_share", 0.02 * n},
+                            {"bounded_share", 0.03 * n},
+                            {"steps_mean", 2.0 * n},
+                            {"flip_mean_mask", 0.04 * n}}));
+      }
+    }
+  }
+  // Another block of the sweep has the same parameters.
+  rows.push_back(row("geocube_curves", "resolution", "geocube", "glass_bunny",
+                     {{"cones", "abc"}, {"sphere", true}, {"resolution", 8}, {"exit_error_mean", 5.0}}));
+  rows.push_back(row("geocube_curves", "bounds", "geocube", "glass_torus",
+                     {{"cones", "bc"}, {"sphere", true}, {"status", "failed"}, {"failure", "lost"}}));
+  const Table table = make_table("geocube.bounds", rows);
+  EXPECT_EQ(table.rows.size(), 1U + 2 * 16);
+  EXPECT_EQ(table.rows.front().cells.size(), 6U);
+  const auto values = [&](const char* label) {
+    std::vector<double> out;
+    for (const TableCell& cell : row_of(table, label).cells)
+      out.push_back(cell.value.value_or(-1));
+    return out;
+  };
+  EXPECT_EQ(values("glass_bunny: none, δ alone"), (std::vector<double>{0.01, 0.02, 0.03, 2, 0.04, 20}));
+  EXPECT_EQ(values("glass_bunny: D").at(3), 4);
+  EXPECT_EQ(values("glass_bunny: A").at(3), 6);
+  EXPECT_EQ(values("glass_bunny: A, B, C, D").at(3), 12);
+  EXPECT_EQ(values("glass_torus: A, B, C").at(3), 22);
+  EXPECT_EQ(values("glass_torus: B, C").at(3), -1) << "not measured";
+  EXPECT_EQ(row_of(table, "glass_torus: B, C, D").cells.at(0).text, "failed");
+  EXPECT_EQ(table.records.size(), 32U);
+  EXPECT_EQ(make_table("geocube.bounds", {rows.back()}).rows.size(), 1U + 16) << "one scene alone";
 }
 
 TEST(ImpostorTables, Fig5TellsPlacesOfTheBallApart) {
