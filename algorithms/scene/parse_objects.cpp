@@ -4,6 +4,7 @@
 
 #include "algorithms/scene/hash.hpp"
 #include "algorithms/scene/mesh_file.hpp"
+#include "algorithms/scene/mesh_order.hpp"
 #include "algorithms/scene/mesh_processing.hpp"
 #include "algorithms/scene/scene_description.hpp"
 
@@ -55,6 +56,7 @@ void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, M
     process_mesh(out, processing, crease_deg);
     if (fit_m > 0) fit_mesh(out, fit_m);
   });
+  order_by_place(out);
 }
 
 void parse_shape(TableReader& reader, MeshDescription& mesh) {
