@@ -1,6 +1,7 @@
 // Where rays enter the objects: the search runs in a pass of its own over whole pixels, since triangles may be smaller than
-// one.
-in vec3 object_position;
+// one. A record of four numbers, for the passes are bound by memory: depth, normal, and whose entry it is.
+#include "algorithms/geocube/entry.glsl"
+
 in vec3 object_normal;
 #ifdef SPLIT
 in float cleared;
@@ -8,12 +9,11 @@ flat in int last_cube;
 #endif
 
 layout(std430, binding = 2) readonly buffer FirstCubes { uint first_cubes[]; };  // by triangle, four to a word
-uniform float object_number;                                                     // from 1
+uniform int object_number;                                                       // from 1
 
-layout(location = 0) out vec4 entry_point;   // in the object's space, and the first cube
-layout(location = 1) out vec4 entry_normal;  // not unit; object's number, 0 where there is none
+layout(location = 0) out vec4 entry;
 #ifdef SPLIT
-layout(location = 2) out vec4 entry_cleared;
+layout(location = 1) out vec4 entry_cleared;
 #endif
 
 void main() {
@@ -24,6 +24,5 @@ void main() {
   uint word = first_cubes[gl_PrimitiveID >> 2];
   int cube = int(word >> uint(8 * (gl_PrimitiveID & 3)) & 255u);
 #endif
-  entry_point = vec4(object_position, float(cube));
-  entry_normal = vec4(object_normal, object_number);
+  entry = vec4(1.0 / gl_FragCoord.w, octahedral(object_normal), entry_tag(object_number, cube));
 }

@@ -114,6 +114,11 @@ class Geocube final : public Technique {
     if (parameters_.functions == Functions::table) defines.emplace_back("FUNCTION_TABLE", "1");
     if (parameters_.stage == SearchStage::split) defines.emplace_back("SPLIT", "1");
     if (parameters_.layers > 1) defines.emplace_back("LAYERS", "1");
+    std::size_t most = 1;  // what only a choice among many cubes takes is left out of the program
+    for (const GlassObject& object : objects_) {
+      if (object.cubes() != nullptr) most = std::max(most, object.cubes()->set().cubes.size());
+    }
+    defines.emplace_back("CUBES", most > 2 ? "3" : most == 2 ? "2" : "1");
     return defines;
   }
 
@@ -136,16 +141,15 @@ class Geocube final : public Technique {
   }
 
   void fit(int width, int height) {
-    if (entry_points_ && entry_points_.width() == width && entry_points_.height() == height) return;
-    entry_points_ = gl::Texture::make_2d("entry points", gl::Format::rgba32f, width, height);
-    entry_normals_ = gl::Texture::make_2d("entry normals", gl::Format::rgba32f, width, height);
+    if (entries_ && entries_.width() == width && entries_.height() == height) return;
+    entries_ = gl::Texture::make_2d("entries", gl::Format::rgba32f, width, height);
     entry_cleared_ = gl::Texture::make_2d("cleared ways", gl::Format::r32f, width, height);
   }
 
   gl::Framebuffer entry_framebuffer(const gl::Texture& depth) const {
     if (parameters_.stage == SearchStage::split)
-      return gl::Framebuffer("entries", {&entry_points_, &entry_normals_, &entry_cleared_}, &depth);
-    return gl::Framebuffer("entries", {&entry_points_, &entry_normals_}, &depth);
+      return gl::Framebuffer("entries", {&entries_, &entry_cleared_}, &depth);
+    return gl::Framebuffer("entries", {&entries_}, &depth);
   }
 
   // What the search needs to know of an object and of the parameters.
@@ -161,7 +165,7 @@ class Geocube final : public Technique {
     program.set("vertex_iterations", parameters_.vertex_iterations);
     program.set("refine", parameters_.refine);
     program.set("switches", parameters_.switches);
-    program.set("object_number", static_cast<float>(object.instance() + 1));
+    program.set("object_number", object.instance() + 1);
   }
 
   void draw_object(const GlassObject& object, const Scene& scene, const Camera& camera,
@@ -196,7 +200,7 @@ class Geocube final : public Technique {
 
   void draw_entries(const Scene& scene, const Camera& camera, const gl::Framebuffer& framebuffer) const {
     framebuffer.bind();
-    framebuffer.clear_color(1, {0, 0, 0, 0});
+    framebuffer.clear_color(0, {0, 0, 0, 0});
     for (const GlassObject& object : objects_) {
       if (object.cubes() == nullptr) continue;
       set_search(object, material_of(object, scene), entry_);
@@ -208,9 +212,8 @@ class Geocube final : public Technique {
   void draw_glass(const Scene& scene, const Camera& camera, const gl::Program& program, const GlassObject* only) const {
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_SCISSOR_TEST);
-    entry_points_.bind(5);
-    entry_normals_.bind(6);
-    entry_cleared_.bind(7);
+    entries_.bind(5);
+    entry_cleared_.bind(6);
     program.use();
     fullscreen_.bind();
     for (const GlassObject& object : objects_) {
@@ -219,6 +222,7 @@ class Geocube final : public Technique {
       const glm::mat4 to_world = object.to_world(scene);
       set_search(object, material, program);
       program.set("eye", glm::vec3(glm::inverse(to_world) * glm::vec4(camera.view.eye, 1.0F)));
+      program.set("pixel_to_ray", pixel_to_ray(camera, to_world));
       program.set("object_to_world", glm::mat3(to_world));
       program.set("object_scale", std::cbrt(std::abs(glm::determinant(glm::mat3(to_world)))));
       program.set("ior", material.ior);
@@ -234,9 +238,18 @@ class Geocube final : public Technique {
     glEnable(GL_DEPTH_TEST);
   }
 
+  // From a pixel's (x, y, 1) to where its ray, from the eye, has gone one metre along the view's axis; object's space.
+  glm::mat3 pixel_to_ray(const Camera& camera, const glm::mat4& to_world) const {
+    const glm::mat4 projection = camera.projection();
+    const glm::vec2 corner(1.0F / projection[0][0], 1.0F / projection[1][1]);
+    const glm::vec2 pixel = 2.0F * corner / glm::vec2(entries_.width(), entries_.height());
+    const glm::mat3 pixel_to_view(glm::vec3(pixel.x, 0, 0), glm::vec3(0, pixel.y, 0), glm::vec3(-corner, -1.0F));
+    return glm::mat3(glm::inverse(camera.world_to_view() * to_world)) * pixel_to_view;
+  }
+
   // The rectangle of the screen that the object's bounds cover.
   void scissor(const GlassObject& object, const glm::mat4& object_to_clip) const {
-    const int width = entry_points_.width(), height = entry_points_.height();
+    const int width = entries_.width(), height = entries_.height();
     glm::vec2 low(1.0F), high(-1.0F);
     for (int i = 0; i < 8; ++i) {
       const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2 & 1);
@@ -257,7 +270,7 @@ class Geocube final : public Technique {
 
   // The first searches of the last frame's pixels, drawn again into textures.
   SearchErrors compare_searches() const {
-    const int width = entry_points_.width(), height = entry_points_.height();
+    const int width = entries_.width(), height = entries_.height();
     const auto make = [&](const char* name) { return gl::Texture::make_2d(name, gl::Format::rgba32f, width, height); };
     const gl::Texture entry = make("entries"), ray = make("rays"), point = make("exits"), normal = make("exit normals");
     const gl::Framebuffer framebuffer("searches", {&entry, &ray, &point, &normal});
@@ -280,7 +293,7 @@ class Geocube final : public Technique {
   std::vector<GlassObject> objects_;
   gl::Texture function_table_;
   gl::Program entry_, glass_, reflect_;
-  gl::Texture entry_points_, entry_normals_, entry_cleared_;
+  gl::Texture entries_, entry_cleared_;
   gl::VertexArray fullscreen_;
   gl::Defines defines_;
   std::optional<Frame> frame_;

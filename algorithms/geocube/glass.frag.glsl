@@ -1,14 +1,15 @@
 // Refraction at both sides and internal reflection: Chan and Wang 2005, Sec. 2.
+#include "algorithms/geocube/entry.glsl"
 #include "algorithms/geocube/search.glsl"
 #include "algorithms/shaders/common/environment.glsl"
 #include "algorithms/shaders/common/optics.glsl"
 
-layout(binding = 5) uniform sampler2D entry_points;
-layout(binding = 6) uniform sampler2D entry_normals;
+layout(binding = 5) uniform sampler2D entries;
 #ifdef SPLIT
-layout(binding = 7) uniform sampler2D entry_cleared;
+layout(binding = 6) uniform sampler2D entry_cleared;
 #endif
-uniform float object_number;
+uniform int object_number;
+uniform mat3 pixel_to_ray;  // of (x, y, 1): from the eye to depth 1, in the object's space
 
 uniform vec3 eye;  // in the object's space, like all but the light
 uniform mat3 object_to_world;
@@ -33,11 +34,13 @@ vec3 light(vec3 direction) { return environment_radiance(normalize(object_to_wor
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 entering = texelFetch(entry_normals, pixel, 0);
-  if (entering.w != object_number) discard;
-  vec4 at = texelFetch(entry_points, pixel, 0);
-  vec3 v = normalize(at.xyz - eye);
-  vec3 n = normalize(entering.xyz);
+  vec4 entering = texelFetch(entries, pixel, 0);
+  bool here = tagged_object(entering.w) == object_number;
+  if (!here) discard;
+  vec3 ray_of_pixel = pixel_to_ray * vec3(gl_FragCoord.xy, 1.0);
+  vec3 p = eye + entering.x * ray_of_pixel;
+  vec3 v = normalize(ray_of_pixel);
+  vec3 n = from_octahedral(entering.yz);
   // Interpolated, a normal may look away at the silhouette: there the ray grazes.
   float cosine = max(-dot(v, n), 0.0);
   if (-dot(v, n) < 0.0) n = normalize(n - 1.0001 * dot(v, n) * v);
@@ -46,12 +49,11 @@ void main() {
   vec3 h = refract(v, n, 1.0 / ior);
   vec3 weight = vec3(1.0 - reflected_share);
 
-  int cube = int(at.w);
+  int cube = tagged_cube(entering.w);
   float start = 0.0;
 #ifdef SPLIT
   start = max(texelFetch(entry_cleared, pixel, 0).x, min_step);
 #endif
-  vec3 p = at.xyz;
 #ifdef REPORT
   entry = vec4(p, h != vec3(0.0) ? 1.0 : 0.0);
   Exit first = trace_inside(p, n, h, cube, start);
@@ -60,7 +62,7 @@ void main() {
   exit_normal = vec4(first.normal, float(first.cube));
 #else
   vec3 shown = vec3(0.0);
-  for (int k = 0; k <= reflections && h != vec3(0.0) && (k == 0 || max(weight.x, max(weight.y, weight.z)) > cut); ++k) {
+  for (int k = 0; here && k <= reflections && h != vec3(0.0) && (k == 0 || max(weight.x, max(weight.y, weight.z)) > cut); ++k) {
     Exit found = trace_inside(p, n, h, cube, start);
     weight *= transmitted(absorption, found.path * object_scale);
     n = found.normal;

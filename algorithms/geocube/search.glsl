@@ -2,6 +2,9 @@
 #include "algorithms/geocube/cube_maps.glsl"
 #include "algorithms/geocube/functions.glsl"
 
+#ifndef CUBES
+#define CUBES 3  // 1, 2, or any number
+#endif
 uniform int iterations;
 uniform int refine;
 uniform int switches;
@@ -19,25 +22,29 @@ struct Exit {
 
 float allowed_step(CubeSample s, vec3 v, float l, vec3 h) {
   float d = s.bounds.x, hv = dot(h, v);
-  vec3 n = normalize(s.normal);
   float a = d * cone_step(l / d, -hv, -hv, 1.0, s.bounds.y);
-  float b = d * cone_step((d - l) / d, hv, dot(h, n), dot(v, n), s.bounds.z);
+  float b = d * cone_step((d - l) / d, hv, dot(h, s.normal), dot(v, s.normal), s.bounds.z);
   float allowed = max(a < kFar ? a : 0.0, b < kFar ? b : 0.0);
   return min(allowed, 2.0 * d);
 }
 
-int next_cube(vec3 p, int current, uint asked) {
-  vec3 across = normalize(p - cube_spheres[current].xyz);
+int next_cube(vec3 v, float l, int current, uint asked) {
+#if CUBES == 1
+  return -1;
+#elif CUBES == 2
+  return cube_count == 2 && (asked >> uint(1 - current) & 1u) == 0u ? 1 - current : -1;
+#else
+  vec3 centre = cube_spheres[current].xyz;
   int best = -1;
   float least = kFar;
   for (int i = 0; i < cube_count; ++i) {
-    if ((asked >> uint(i) & 1u) != 0u) continue;
-    float away = abs(dot(cube_spheres[i].xyz - p, across));
-    if (away >= least) continue;
+    float away = abs(dot(cube_spheres[i].xyz - centre, v) - l);
+    if ((asked >> uint(i) & 1u) != 0u || away >= least) continue;
     least = away;
     best = i;
   }
   return best;
+#endif
 }
 
 // How far cone C clears the way, at least the minimum step.
@@ -47,43 +54,45 @@ float first_step(vec3 p, vec3 normal, vec3 h, int cube) {
 }
 
 // The march from p + t h; `inside` becomes the last place known to be inside, `found` tells whether t lies beyond the exit.
+// Two loops, since wide vectors execute both sides of a branch but do leave a loop.
 void march(vec3 p, vec3 h, int most, inout int cube, inout float t, inout float inside, inout int steps, out bool found,
            out vec3 v, out CubeSample s) {
   found = false;
   v = vec3(0.0);
   s = CubeSample(vec4(0.0), vec3(0.0));
-  for (; !found && steps < most; ) {
-    ++steps;
-    vec4 sphere = cube_spheres[cube];
-    vec3 w = p + t * h - sphere.xyz;
-    float l = max(length(w), 1e-20);
-    v = w / l;
-    if (l < sphere.w) {
-      inside = t;
-      t += max(sphere.w * sphere_step(l / sphere.w, dot(h, v)), min_step);
-      continue;
+  float l = 0.0;
+  while (!found && steps < most) {
+    bool outside = false;
+    while (!outside && steps < most) {
+      ++steps;
+      vec4 sphere = cube_spheres[cube];
+      vec3 w = p + t * h - sphere.xyz;
+      v = w * inversesqrt(max(dot(w, w), 1e-37));
+      l = dot(w, v);
+      s = fetch_cube(cube, w);
+      bool in_sphere = l < sphere.w;
+      outside = !in_sphere && l >= s.bounds.x;
+      float allowed = in_sphere ? sphere.w * sphere_step(l / sphere.w, dot(h, v)) : allowed_step(s, v, l, h);
+      if (!outside) {
+        inside = t;
+        t += max(allowed, min_step);
+      }
     }
-    s = fetch_cube(cube, v);
-    if (l < s.bounds.x) {
-      inside = t;
-      t += max(allowed_step(s, v, l, h), min_step);
-      continue;
-    }
-    uint asked = 1u << uint(cube);
     bool seen = false;
-    for (int k = 0; k < switches && !seen; ++k) {
-      int other = next_cube(p + t * h, cube, asked);
+#if CUBES > 1
+    uint asked = 1u << uint(cube);
+    int home = cube;
+    for (int k = 0; outside && k < switches && !seen; ++k) {
+      int other = next_cube(v, l, home, asked);
       if (other < 0) break;
       asked |= 1u << uint(other);
       vec3 from_other = p + t * h - cube_spheres[other].xyz;
-      if (length(from_other) < fetch_distance(other, from_other)) {
-        cube = other;
-        seen = true;
-      }
+      seen = length(from_other) < fetch_distance(other, from_other);
+      if (seen) cube = other;
     }
-    if (seen) continue;
-    found = dot(h, s.normal) > 0.0;
-    if (!found) t += min_step;
+#endif
+    found = outside && !seen && dot(h, s.normal) > 0.0;
+    if (outside && !seen && !found) t += min_step;
   }
 }
 
@@ -99,16 +108,15 @@ Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
   march(p, h, iterations, cube, t, inside, result.steps, found, v, s);
   float outside = found ? t : kFar;
   result.bounded = !found;
-  if (!found) {
-    v = normalize(p + t * h - cube_spheres[cube].xyz);
-    s = fetch_cube(cube, v);
-  }
-  for (int k = 0; found && k < refine; ++k) {
-    float slope = dot(h, s.normal);
-    vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
-    float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
-    if (!(next >= inside && next <= outside)) next = 0.5 * (inside + min(outside, t));
-    t = next;
+  int corrections = found ? refine : 1;
+  for (int k = 0; k < corrections; ++k) {
+    if (found) {
+      float slope = dot(h, s.normal);
+      vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
+      float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
+      if (!(next >= inside && next <= outside)) next = 0.5 * (inside + min(outside, t));
+      t = next;
+    }
     vec3 w = p + t * h - cube_spheres[cube].xyz;
     float l = max(length(w), 1e-20);
     v = w / l;

@@ -94,7 +94,7 @@ struct Exit {
 /// The share of the next step that cones A and B allow, at distance l from the centre along v inside d.
 inline float allowed_step(const CubeSample& s, const glm::vec3& v, float l, const glm::vec3& h) {
   const float d = s.bounds.x, hv = glm::dot(h, v);
-  const glm::vec3 n = glm::normalize(glm::vec3(s.plane));
+  const glm::vec3 n(s.plane);  // its length cancels
   // Cone A: apex S, base at O, so a = n = −v. Cone B: apex O, base in the tangent plane, a = v.
   const float a = d * cone_step(l / d, -hv, -hv, 1.0F, s.bounds.y);
   const float b = d * cone_step((d - l) / d, hv, glm::dot(h, n), glm::dot(v, n), s.bounds.z);
@@ -103,17 +103,16 @@ inline float allowed_step(const CubeSample& s, const glm::vec3& v, float l, cons
 }
 
 /// The cube whose centre is nearest to the plane through p across the direction to the current centre, among those not
-/// in `asked`; −1 when there is none (Sec. 2.3, Fig. 7a).
+/// in `asked`; −1 when there is none (Sec. 2.3, Fig. 7a). p lies at distance l along the unit v from the current
+/// centre.
 template <class Maps>
-int next_cube(const Maps& maps, const glm::vec3& p, int current, std::uint32_t asked) {
-  const glm::vec3 across = glm::normalize(p - maps.center(current));
+int next_cube(const Maps& maps, const glm::vec3& v, float l, int current, std::uint32_t asked) {
   int best = -1;
   float least = kFar;
   for (int i = 0; i < maps.count(); ++i) {
-    if ((asked >> static_cast<unsigned>(i) & 1U) != 0U) continue;
-    const float distance = std::abs(glm::dot(maps.center(i) - p, across));
-    if (distance >= least) continue;
-    least = distance;
+    const float away = std::abs(glm::dot(maps.center(i) - maps.center(current), v) - l);
+    if ((asked >> static_cast<unsigned>(i) & 1U) != 0U || away >= least) continue;
+    least = away;
     best = i;
   }
   return best;
@@ -136,33 +135,33 @@ Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, co
   CubeSample s;
   bool found = false;
   while (!found && exit.steps < options.iterations) {
-    ++exit.steps;
-    const glm::vec3 w = p + t * h - maps.center(cube);
-    const float l = std::max(glm::length(w), 1e-20F);
-    v = w / l;
-    if (l < maps.sphere(cube)) {
+    float l = 0;
+    bool beyond = false;
+    while (!beyond && exit.steps < options.iterations) {
+      ++exit.steps;
+      const glm::vec3 w = p + t * h - maps.center(cube);
+      l = std::max(glm::length(w), 1e-20F);
+      v = w / l;
+      s = maps.fetch(cube, v);
+      const float sphere = maps.sphere(cube);
+      beyond = l >= sphere && l >= s.bounds.x;
+      if (beyond) break;
       inside = t;
-      t += std::max(maps.sphere(cube) * sphere_step(l / maps.sphere(cube), glm::dot(h, v)), options.min_step);
-      continue;
+      const float allowed = l < sphere ? sphere * sphere_step(l / sphere, glm::dot(h, v)) : allowed_step(s, v, l, h);
+      t += std::max(allowed, options.min_step);
     }
-    s = maps.fetch(cube, v);
-    if (l < s.bounds.x) {
-      inside = t;
-      t += std::max(allowed_step(s, v, l, h), options.min_step);
-      continue;
-    }
+    if (!beyond) break;
     // Outside for this cube: through the surface, or out of its sight.
     std::uint32_t asked = 1U << static_cast<unsigned>(cube);
+    const int home = cube;
     bool seen = false;
     for (int k = 0; k < options.switches && !seen; ++k) {
-      const int other = next_cube(maps, p + t * h, cube, asked);
+      const int other = next_cube(maps, v, l, home, asked);
       if (other < 0) break;
       asked |= 1U << static_cast<unsigned>(other);
       const glm::vec3 from_other = p + t * h - maps.center(other);
-      if (glm::length(from_other) < maps.fetch(other, from_other).bounds.x) {
-        cube = other;
-        seen = true;
-      }
+      seen = glm::length(from_other) < maps.fetch(other, from_other).bounds.x;
+      if (seen) cube = other;
     }
     if (seen) continue;
     // A ray that heads inwards is only beneath the sampled surface, not through it.
@@ -174,18 +173,18 @@ Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, co
   }
 
   exit.bounded = !found;
-  if (!found) {
-    v = glm::normalize(p + t * h - maps.center(cube));
-    s = maps.fetch(cube, v);
-  }
-  for (int k = 0; found && k < options.refine; ++k) {
-    // To the tangent plane at S, or half-way where that leads out of the known interval.
-    const glm::vec3 n(s.plane);
-    const float slope = glm::dot(h, n);
-    const glm::vec3 to_s = maps.center(cube) + s.bounds.x * v - (p + t * h);
-    float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
-    if (!(next >= inside && next <= outside)) next = 0.5F * (inside + std::min(outside, t));
-    t = next;
+  // Where the bound stopped the march, one fetch tells the surface point ahead.
+  const int corrections = found ? options.refine : 1;
+  for (int k = 0; k < corrections; ++k) {
+    if (found) {
+      // To the tangent plane at S, or half-way where that leads out of the known interval.
+      const glm::vec3 n(s.plane);
+      const float slope = glm::dot(h, n);
+      const glm::vec3 to_s = maps.center(cube) + s.bounds.x * v - (p + t * h);
+      float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
+      if (!(next >= inside && next <= outside)) next = 0.5F * (inside + std::min(outside, t));
+      t = next;
+    }
     const glm::vec3 w = p + t * h - maps.center(cube);
     const float l = std::max(glm::length(w), 1e-20F);
     v = w / l;
