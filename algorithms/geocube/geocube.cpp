@@ -210,7 +210,10 @@ class Geocube final : public Technique {
 
   // The pixels of the bound framebuffer that show a dielectric; `only` one of them, or all.
   void draw_glass(const Scene& scene, const Camera& camera, const gl::Program& program, const GlassObject* only) const {
-    glDisable(GL_DEPTH_TEST);
+    // The triangle lies on the far plane: where nothing was drawn before it, the shader need not even start.
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
     glEnable(GL_SCISSOR_TEST);
     entries_.bind(5);
     entry_cleared_.bind(6);
@@ -235,7 +238,8 @@ class Geocube final : public Technique {
       glDrawArrays(GL_TRIANGLES, 0, 3);
     }
     glDisable(GL_SCISSOR_TEST);
-    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_TRUE);
   }
 
   // From a pixel's (x, y, 1) to where its ray, from the eye, has gone one metre along the view's axis; object's space.
