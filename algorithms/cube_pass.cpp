@@ -106,15 +106,18 @@ void CubeScene::draw(const ForwardPass& forward, const CubeCamera& camera, const
     glDepthMask(GL_TRUE);
     const float far_depth = 1.0F;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
+    draw_cube_objects(forward, camera, face, opaque_, Objects::lambertian);
+    // Last, at the far plane, so that nothing is shaded that objects hide.
     glDepthMask(GL_FALSE);
+    glEnable(GL_DEPTH_CLAMP);
     use_cube_program(sky_, camera, face);
-    sky_.set("sky_size", 0.5F * camera.far_m);
+    sky_.set("sky_size", 2.0F * camera.far_m);
     sky_.set("sky_distance", sky_distance_m);
     forward.bind_environment(sky_);
     strip_.bind();
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, kSkyVertices, copies(camera.layers));
+    glDisable(GL_DEPTH_CLAMP);
     glDepthMask(GL_TRUE);
-    draw_cube_objects(forward, camera, face, opaque_, Objects::lambertian);
   });
 }
 

@@ -286,21 +286,21 @@ void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
   }
   glDepthMask(keep_depth ? GL_FALSE : GL_TRUE);
-  // The background is drawn where the depth is still that of the far plane: behind everything when depth is kept, first
-  // of all otherwise.
   glDepthFunc(GL_LEQUAL);
+  bind_lights();
+  opaque_.use();
+  opaque_.set("world_to_clip", world_to_clip);
+  opaque_.set("eye", camera.view.eye);
+  draw_visible(world_to_clip, Objects::lambertian);
+
+  // Last, where the depth is still that of the far plane, so that nothing is shaded that objects hide.
+  glDepthMask(GL_FALSE);
   background_.use();
   background_.set("clip_to_world", glm::inverse(world_to_clip));
   background_.set("eye", camera.view.eye);
   bind_environment(background_);
   fullscreen_.bind();
   glDrawArrays(GL_TRIANGLES, 0, 3);
-
-  bind_lights();
-  opaque_.use();
-  opaque_.set("world_to_clip", world_to_clip);
-  opaque_.set("eye", camera.view.eye);
-  draw_visible(world_to_clip, Objects::lambertian);
   glDepthMask(GL_TRUE);
 }
 

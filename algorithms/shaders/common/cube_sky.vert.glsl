@@ -1,4 +1,4 @@
-// A cube about the reference point that carries the environment; drawn behind everything, without depth.
+// A cube about the reference point that carries the environment; drawn beyond the far plane, behind everything.
 #if CUBE_PASS == 1
 #extension GL_ARB_shader_viewport_layer_array : require
 #endif
