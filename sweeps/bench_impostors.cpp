@@ -40,7 +40,7 @@ class ImpostorFrame {
     if (forward_.shadowed()) forward_.update_shadows(scene_, shadow_);
     framebuffer_.bind();
     forward_.draw_shaded(camera_, false);
-    if (with_objects) objects_.draw(scene_, forward_, camera_, maps_, lookup_);
+    if (with_objects) objects_.draw(scene_, forward_, camera_, target_, maps_, lookup_);
     timer.end_frame();
     gl::check("bench", kName);
   }
@@ -48,10 +48,11 @@ class ImpostorFrame {
   double count_pixels() {
     gl::PassTimer untimed;
     render(untimed, false);
+    objects_.draw_surfaces(scene_, forward_, camera_, target_);
     GLuint query = 0;
     glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
     glBeginQuery(GL_SAMPLES_PASSED, query);
-    objects_.draw(scene_, forward_, camera_, maps_, lookup_);
+    objects_.shade(scene_, camera_, target_, maps_, lookup_);
     glEndQuery(GL_SAMPLES_PASSED);
     GLuint64 passed = 0;
     glGetQueryObjectui64v(query, GL_QUERY_RESULT, &passed);
@@ -69,6 +70,7 @@ class ImpostorFrame {
   DynamicObjects objects_;
   gl::Texture color_, depth_;
   gl::Framebuffer framebuffer_;
+  Target target_{color_, depth_, framebuffer_};
 };
 
 // As far as the frame follows light: into an object, `internal` times on inside, out, and on by the pictures of the
@@ -93,29 +95,10 @@ SurfaceOptions reference_options(const Scene& scene, const LookupSettings& looku
 
 BenchResult bench_distance_impostors(const BenchRequest& request, nlohmann::json& recipe) {
   check_frames(request);
-  // The session checks scene, view and settings, and says which values they lead to.
-  RenderSession session(load_scene(request.scene), kName, request.view, request.width, request.height);
   Parameters parameters;
-  const ParameterRef table = bind_parameters(parameters);
-  for (const auto& [name, value] : request.settings) {
-    session.assign_text(name, value);
-    if (const ParameterInfo* info = table.table->find(name))
-      table.assign(name, parse_value(*info, value, kName), kName);
-    else if (!name.starts_with("scene.") && !name.starts_with("frame."))
-      throw InputError(fmt::format("bench: {} of {} is timed with the default of '{}'", kName, request.scene, name));
-  }
-  session.prepare();
-  gl::PassTimer untimed;
-  session.render(untimed);
+  const RenderSession session = bench_session(request, kName, bind_parameters(parameters), recipe);
   const Scene& scene = session.scene();
   const Camera& camera = session.camera();
-  recipe = {{"technique", kName},
-            {"scene", request.scene},
-            {"view", camera.view.name},
-            {"width", request.width},
-            {"height", request.height},
-            {"parameters", session.parameters()},
-            {"scene_hash", scene.content_hash()}};
 
   const MapSettings maps = map_settings(parameters);
   const LookupSettings lookup = lookup_settings(parameters);

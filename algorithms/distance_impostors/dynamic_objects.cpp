@@ -154,22 +154,53 @@ void DynamicObjects::draw_mutual(const Scene& scene, const ForwardPass& forward,
   glDisable(GL_CULL_FACE);
 }
 
-void DynamicObjects::draw(const Scene& scene, const ForwardPass& forward, const Camera& camera,
-                          const MapSettings& settings, const LookupSettings& lookup) {
+std::optional<PixelArea> DynamicObjects::seen(const Scene& scene, const Object& object, const Camera& camera) const {
+  const Instance& instance = instance_of(scene, object);
+  const Extent& extent = extents_.at(instance.mesh);
+  return seen_area(camera.projection() * camera.world_to_view() * instance.to_world,
+                   {extent.middle - extent.half, extent.middle + extent.half}, camera.width, camera.height);
+}
+
+void DynamicObjects::draw_surfaces(const Scene& scene, const ForwardPass& forward, const Camera& camera,
+                                   const Target& target) {
+  pixels_.begin(target.depth);
+  // All of them before the first object: areas may overlap.
+  for (const Object& object : objects_) {
+    if (const auto area = seen(scene, object, camera)) pixels_.clear(*area);
+  }
   glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LEQUAL);
   const glm::mat4 world_to_clip = camera.projection() * camera.world_to_view();
-  for (const Object& object : objects_) {
-    const gl::Program& shade = program(material_of(scene, object).kind, Use::frame, settings, lookup);
-    bind(scene, object, lookup, shade);
-    shade.set("eye", camera.view.eye);
-    cull(scene, object, camera.view.eye);
-    forward.draw_instance(scene, object.instance, world_to_clip, shade);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (!seen(scene, objects_[i], camera)) continue;
+    cull(scene, objects_[i], camera.view.eye);
+    forward.draw_instance(scene, objects_[i].instance, world_to_clip,
+                          pixels_.surfaces(camera, static_cast<int>(i) + 1));
   }
   glDisable(GL_CULL_FACE);
+}
+
+void DynamicObjects::shade(const Scene& scene, const Camera& camera, const Target& target, const MapSettings& settings,
+                           const LookupSettings& lookup) {
+  target.framebuffer.bind();
+  glDisable(GL_BLEND);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const auto area = seen(scene, objects_[i], camera);
+    if (!area) continue;
+    const gl::Program& shading = program(material_of(scene, objects_[i]).kind, Use::frame, settings, lookup);
+    bind(scene, objects_[i], lookup, shading);
+    pixels_.bind(shading, camera, static_cast<int>(i) + 1);
+    shading.use();
+    pixels_.fill(*area);
+  }
+}
+
+void DynamicObjects::draw(const Scene& scene, const ForwardPass& forward, const Camera& camera, const Target& target,
+                          const MapSettings& settings, const LookupSettings& lookup) {
+  draw_surfaces(scene, forward, camera, target);
+  shade(scene, camera, target, settings, lookup);
 }
 
 void DynamicObjects::draw_report(const Scene& scene, const ForwardPass& forward, const Camera& camera,
@@ -208,13 +239,17 @@ const gl::Program& DynamicObjects::program(SurfaceKind kind, Use use, const MapS
     if (settings.store == DistanceStore::alpha) wanted.emplace_back("DISTANCE_IN_ALPHA", "1");
     wanted.emplace_back("LAYERS", fmt::to_string(static_cast<int>(settings.layers)));
   }
+  if (use == Use::frame) wanted.emplace_back("FROM_PIXELS", "1");
   Compiled& compiled = programs_[{kind, use}];
   if (compiled.program && compiled.defines == wanted) return compiled.program;
   const std::string fragment = std::string(kFolder) + (use == Use::report ? "report.frag.glsl" : "surface.frag.glsl");
+  const std::string shared = "algorithms/shaders/common/";
   if (use == Use::cube)
     compiled.program = make_cube_program("optical object in a cube", fragment, settings.layers, wanted);
   else
-    compiled.program = gl::Program("optical object", {"algorithms/shaders/common/opaque.vert.glsl", fragment}, wanted);
+    compiled.program =
+        gl::Program("optical object",
+                    {shared + (use == Use::frame ? "fullscreen.vert.glsl" : "opaque.vert.glsl"), fragment}, wanted);
   compiled.defines = std::move(wanted);
   return compiled.program;
 }
@@ -256,7 +291,7 @@ const DynamicObjects::Cost& DynamicObjects::cost() {
 }
 
 std::string DynamicObjects::reload_shaders() {
-  std::string words = cube_scene_.reload_shaders();
+  std::string words = cube_scene_.reload_shaders() + pixels_.reload_shaders();
   for (auto& [key, compiled] : programs_) {
     if (compiled.program) words += compiled.program.reload();
   }

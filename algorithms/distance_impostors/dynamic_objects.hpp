@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "algorithms/distance_impostors/impostor_cube.hpp"
+#include "algorithms/distance_impostors/object_pixels.hpp"
 #include "algorithms/distance_impostors/refractor_map.hpp"
 #include "algorithms/forward_pass.hpp"
+#include "algorithms/technique.hpp"
 #include "gl/timer.hpp"
 
 namespace pellucid::distance_impostors {
@@ -48,8 +50,12 @@ class DynamicObjects {
   void draw_mutual(const Scene&, const ForwardPass&, const MapSettings&, const LookupSettings&,
                    const std::vector<std::size_t>& which);
 
-  /// All objects into the bound framebuffer, behind what its depth holds.
-  void draw(const Scene&, const ForwardPass&, const Camera&, const MapSettings&, const LookupSettings&);
+  /// All objects, behind what the target's depth holds.
+  void draw(const Scene&, const ForwardPass&, const Camera&, const Target&, const MapSettings&, const LookupSettings&);
+  /// Its two halves: which surface each pixel shows, and then its light, once a pixel. The target's framebuffer is
+  /// bound after the second.
+  void draw_surfaces(const Scene&, const ForwardPass&, const Camera&, const Target&);
+  void shade(const Scene&, const Camera&, const Target&, const MapSettings&, const LookupSettings&);
   /// One object with the three outputs of report.frag.glsl.
   void draw_report(const Scene&, const ForwardPass&, const Camera&, const MapSettings&, const LookupSettings&,
                    const Object&);
@@ -71,6 +77,7 @@ class DynamicObjects {
   /// Leaves out the far side of a closed object that the eye is not in: a software rasteriser would shade it.
   void cull(const Scene&, const Object&, const glm::vec3& eye) const;
   glm::vec3 anchor(const Scene&, const Object&, const MapSettings&) const;
+  std::optional<PixelArea> seen(const Scene&, const Object&, const Camera&) const;
 
   std::vector<Object> objects_;
   std::map<int, RefractorMap> refractors_;  // by mesh
@@ -82,6 +89,7 @@ class DynamicObjects {
   std::vector<std::string> warnings_;
   glm::vec3 proxy_min_{0.0F}, proxy_max_{0.0F};  // of the opaque objects, in the world
   CubeScene cube_scene_;
+  ObjectPixels pixels_;
   struct Compiled {
     gl::Defines defines;
     gl::Program program;

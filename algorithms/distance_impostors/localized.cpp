@@ -42,7 +42,7 @@ void Localized::render(const Scene& scene, const Camera& camera, ForwardPass& fo
   }
   {
     auto pass = timer.pass("objects");
-    objects_.draw(scene, forward, camera, maps, lookup);
+    objects_.draw(scene, forward, camera, target, maps, lookup);
   }
   frame_ = Frame{&scene, &forward, camera, maps, lookup};
 }

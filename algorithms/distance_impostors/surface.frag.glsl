@@ -60,7 +60,8 @@ vec3 dielectric(vec3 V, vec3 n, bool inside) {
 #endif
 
 void main() {
-  vec3 V = normalize(world_position - eye);
+  vec3 V;
+  if (!fetch_surface(V)) discard;
   bool inside;
   vec3 n = visible_normal(V, inside);
 #if KIND == 3

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "algorithms/scene/bounds.hpp"
+#include "algorithms/scene/scene.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+
+namespace pellucid::distance_impostors {
+
+/// A part of the frame [pixels], from the bottom left, up to a depth of the depth buffer.
+struct PixelArea {
+  int x = 0, y = 0, width = 0, height = 0;
+  float farthest = 1;
+};
+/// Where a box may be seen in a frame of that size; nothing where it is not.
+std::optional<PixelArea> seen_area(const glm::mat4& box_to_clip, const Bounds& box, int width, int height);
+
+/// Which surface of an optical object each pixel shows. A rasteriser shades whole blocks of pixels for each triangle,
+/// and those of a finely tessellated object are no larger than a pixel: so a first pass keeps the surfaces, and a
+/// second one follows light once a pixel, and not at all for what another object hides.
+class ObjectPixels {
+ public:
+  /// For surfaces before what `depth` holds, which is written too.
+  void begin(const gl::Texture& depth);
+  void clear(const PixelArea&) const;
+  /// The first pass's program, behind opaque.vert.glsl; `number` > 0 tells which object it is.
+  const gl::Program& surfaces(const Camera&, int number);
+
+  /// What a program of the second pass reads (surface_point.glsl with FROM_PIXELS), behind fullscreen.vert.glsl.
+  void bind(const gl::Program&, const Camera&, int number) const;
+  /// Runs the program in use where the bound framebuffer's depth is not beyond the area.
+  void fill(const PixelArea&) const;
+
+  std::string reload_shaders() { return surfaces_ ? surfaces_.reload() : std::string(); }
+
+ private:
+  gl::Texture pixels_;
+  gl::Framebuffer framebuffer_;
+  gl::Program surfaces_;
+  gl::VertexArray fullscreen_;
+};
+
+}  // namespace pellucid::distance_impostors
