@@ -269,6 +269,31 @@ void check_frames(const BenchRequest& request) {
                                2 * BenchResult::kBlockFrames));
 }
 
+RenderSession bench_session(const BenchRequest& request, const char* technique, ParameterRef parameters,
+                            nlohmann::json& recipe) {
+  RenderSession session(load_scene(request.scene), technique, request.view, request.width, request.height);
+  for (const auto& [name, value] : request.settings) {
+    session.assign_text(name, value);
+    if (const ParameterInfo* info = parameters.table->find(name)) {
+      parameters.assign(name, parse_value(*info, value, technique), technique);
+    } else if (!name.starts_with("scene.") && name != "frame.format") {
+      throw InputError(
+          fmt::format("bench: {} of {} is timed with the default of '{}'", technique, request.scene, name));
+    }
+  }
+  session.prepare();
+  gl::PassTimer untimed;
+  session.render(untimed);
+  recipe = {{"technique", technique},
+            {"scene", request.scene},
+            {"view", session.camera().view.name},
+            {"width", request.width},
+            {"height", request.height},
+            {"parameters", session.parameters()},
+            {"scene_hash", session.scene().content_hash()}};
+  return session;
+}
+
 BenchResult bench_sampling_hulls(const BenchRequest& request, nlohmann::json& recipe) {
   check_frames(request);
   RenderSession session(load_scene(request.scene), kTechnique, request.view, request.width, request.height);

@@ -53,7 +53,7 @@ struct BenchResult {
   std::optional<BenchRatio> own;  ///< (method − opaque) / (bare − opaque); nothing where the noise hides the hulls
   std::string clock;              ///< gl::name(Clock)
   double blends_per_pixel = 0;    ///< front faces that passed the depth test, over all pixels of the image
-  int fetches_per_blend = 0;      ///< of the bare shader; an upper bound of the method's where light is shadowed
+  double fetches_per_blend = 0;   ///< of the bare shader; an upper bound of the method's where light is shadowed
   double fetches_per_pixel = 0;   ///< their product
   std::optional<BenchReference> reference;  ///< nothing where it is not asked for, or there is none
 };
@@ -66,6 +66,11 @@ BenchResult bench_sampling_hulls(const BenchRequest&, nlohmann::json& recipe);
 /// as a search at most. `blends_per_pixel` is the share of pixels that show an object, `fetches_per_blend` of a mirror
 /// or metal.
 BenchResult bench_distance_impostors(const BenchRequest&, nlohmann::json& recipe);
+
+/// The same for geocube: the bare shader makes as many fetches at each pixel as the search did there. `opaque` includes
+/// the entries, which both share; `blends_per_pixel` is the share of pixels that show a dielectric, `fetches_per_blend`
+/// a mean of theirs.
+BenchResult bench_geocube(const BenchRequest&, nlohmann::json& recipe);
 
 /// The hulls against VTK's GPU ray caster on the same volume and view, alone in a black world and white where it is
 /// opaque, so that nothing but the medium is drawn. VTK's sample distance is the longest at which its error against the

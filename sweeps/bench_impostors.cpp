@@ -96,7 +96,7 @@ SurfaceOptions reference_options(const Scene& scene, const LookupSettings& looku
 BenchResult bench_distance_impostors(const BenchRequest& request, nlohmann::json& recipe) {
   check_frames(request);
   Parameters parameters;
-  const RenderSession session = bench_session(request, kName, bind_parameters(parameters), recipe);
+  RenderSession session = bench_session(request, kName, bind_parameters(parameters), recipe);
   const Scene& scene = session.scene();
   const Camera& camera = session.camera();
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/render_session.hpp"
 #include "sweeps/bench.hpp"
 #include "sweeps/bench_reference.hpp"
 #include "sweeps/frame_clock.hpp"
@@ -22,5 +23,11 @@ void time_subjects(const std::array<FrameClock::Draw, 3>& subjects, int frames, 
 
 /// Throws InputError for fewer frames than have an interval.
 void check_frames(const BenchRequest&);
+
+/// The scene with the request's settings, a frame of it drawn, and the recipe of what was drawn. The session checks
+/// names and values; those of the technique go to `parameters` too. Throws InputError for a setting that is
+/// neither the technique's nor `scene.…` nor `frame.format`, since the bench's frames are not the session's.
+RenderSession bench_session(const BenchRequest&, const char* technique, ParameterRef parameters,
+                            nlohmann::json& recipe);
 
 }  // namespace pellucid::sweeps

@@ -26,10 +26,20 @@ vec3 cube_coordinates(int cube, vec3 direction) {
   return vec3(uv, float(cube * cube_layers * 6) + p.z);
 }
 
+#ifdef COUNT
+int both_fetched = 0, bounds_fetched = 0;
+#endif
+
 CubeSample fetch_cube(int cube, vec3 direction) {
+#ifdef COUNT
+  ++both_fetched;
+#endif
   vec3 at = cube_coordinates(cube, direction);
   return CubeSample(textureLod(cube_bounds, at, 0.0), textureLod(cube_planes, at, 0.0).xyz);
 }
-float fetch_distance(int cube, vec3 direction) {
-  return textureLod(cube_bounds, cube_coordinates(cube, direction), 0.0).x;
+vec4 fetch_bounds(int cube, vec3 direction) {
+#ifdef COUNT
+  ++bounds_fetched;
+#endif
+  return textureLod(cube_bounds, cube_coordinates(cube, direction), 0.0);
 }

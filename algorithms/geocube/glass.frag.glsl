@@ -26,11 +26,19 @@ layout(location = 0) out vec4 entry;      // point; 1
 layout(location = 1) out vec4 ray;        // refracted direction; steps
 layout(location = 2) out vec4 exit_point; // and the length, negative when the bound stopped the search
 layout(location = 3) out vec4 exit_normal; // and the cube
+#elif defined(COUNT)
+layout(location = 0) out vec4 fetched;  // both cube maps, bounds alone, the environment; 1
+int lights_fetched = 0;
 #else
 layout(location = 0) out vec4 radiance;
 #endif
 
-vec3 light(vec3 direction) { return environment_radiance(normalize(object_to_world * direction)); }
+vec3 light(vec3 direction) {
+#if defined(COUNT) && defined(ENVIRONMENT_IMAGE)
+  ++lights_fetched;
+#endif
+  return environment_radiance(normalize(object_to_world * direction));
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -84,6 +92,10 @@ void main() {
     cube = found.cube;
     start = 0.0;
   }
+#ifdef COUNT
+  fetched = vec4(both_fetched, bounds_fetched, lights_fetched, 1.0);
+#else
   radiance = vec4(show > 0 ? shown : color, 1.0);
+#endif
 #endif
 }

@@ -50,7 +50,7 @@ int next_cube(vec3 v, float l, int current, uint asked) {
 // How far cone C clears the way, at least the minimum step.
 float first_step(vec3 p, vec3 normal, vec3 h, int cube) {
   if (-dot(h, normal) < cosine_c - 1e-4) return min_step;
-  return max(min_step, fetch_cube(cube, p - cube_spheres[cube].xyz).bounds.w);
+  return max(min_step, fetch_bounds(cube, p - cube_spheres[cube].xyz).w);
 }
 
 // The march from p + t h; `inside` becomes the last place known to be inside, `found` tells whether t lies beyond the exit.
@@ -67,9 +67,9 @@ void march(vec3 p, vec3 h, int most, inout int cube, inout float t, inout float 
       ++steps;
       vec4 sphere = cube_spheres[cube];
       vec3 w = p + t * h - sphere.xyz;
-      v = w * inversesqrt(max(dot(w, w), 1e-37));
-      l = dot(w, v);
-      s = fetch_cube(cube, w);
+      l = max(length(w), 1e-20);
+      v = w / l;
+      s = fetch_cube(cube, v);
       bool in_sphere = l < sphere.w;
       outside = !in_sphere && l >= s.bounds.x;
       float allowed = in_sphere ? sphere.w * sphere_step(l / sphere.w, dot(h, v)) : allowed_step(s, v, l, h);
@@ -87,7 +87,7 @@ void march(vec3 p, vec3 h, int most, inout int cube, inout float t, inout float 
       if (other < 0) break;
       asked |= 1u << uint(other);
       vec3 from_other = p + t * h - cube_spheres[other].xyz;
-      seen = length(from_other) < fetch_distance(other, from_other);
+      seen = length(from_other) < fetch_bounds(other, from_other).x;
       if (seen) cube = other;
     }
 #endif

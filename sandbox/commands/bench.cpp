@@ -1,9 +1,12 @@
 // pellucid bench.
 #include "sweeps/bench.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -115,22 +118,50 @@ void print_reference(const BenchReference& reference) {
       "rays per pixel", reference.rays_per_pixel, reference.depth, reference.depth == 1 ? "" : "s", reference.build_ms);
 }
 
+/// A technique that has a bare shader.
+struct Subject {
+  std::string_view technique;
+  const char* scene;  ///< without --scene
+  BenchResult (*bench)(const sweeps::BenchRequest&, nlohmann::json&);
+  std::string (*counts)(const nlohmann::json& parameters);  ///< what decides on the fetches, in words
+};
+const Subject kSubjects[] = {
+    {"sampling_hulls", "fog_forest", sweeps::bench_sampling_hulls,
+     [](const nlohmann::json& p) {
+       return fmt::format("{} hulls of {} samples", p.at("hulls").get<int>(), p.at("samples").get<int>());
+     }},
+    {"distance_impostors", "mirror_room", sweeps::bench_distance_impostors,
+     [](const nlohmann::json& p) { return fmt::format("NITER {}", p.at("iterations").get<int>()); }},
+    {"geocube", "glass_bunny", sweeps::bench_geocube,
+     [](const nlohmann::json& p) {
+       return fmt::format("at most {} steps, reflections {}", p.at("iterations").get<int>(),
+                          p.at("reflections").get<int>());
+     }},
+};
+
+std::string subject_names() {
+  std::vector<std::string_view> names;
+  for (const Subject& subject : kSubjects)
+    names.push_back(subject.technique);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 int bench(const Options& options) {
   const Size size = parse_size(options.size);
   const TechniqueInfo& info = find_technique(options.technique);
-  const bool hulls = info.name == "sampling_hulls";
-  if (!hulls && info.name != "distance_impostors") {
-    throw InputError(
-        fmt::format("bench: there is no bare shader of {}, only of sampling_hulls and distance_impostors", info.name));
+  const auto subject = std::find_if(std::begin(kSubjects), std::end(kSubjects),
+                                    [&](const Subject& s) { return s.technique == info.name; });
+  if (subject == std::end(kSubjects)) {
+    throw InputError(fmt::format("bench: there is no bare shader of {}, only of {}", info.name, subject_names()));
   }
-  const std::string scene = !options.scene.empty() ? options.scene : hulls ? "fog_forest" : "mirror_room";
+  const bool hulls = info.name == "sampling_hulls";
+  const std::string scene = !options.scene.empty() ? options.scene : subject->scene;
   sweeps::BenchRequest request{scene, options.view, size.width, size.height, {}, options.frames, options.reference};
   for (const std::string& setting : options.settings)
     request.settings.push_back(parse_assignment(setting));
   gl::Context context({.device = options.device});
   nlohmann::json recipe;
-  const BenchResult result =
-      hulls ? sweeps::bench_sampling_hulls(request, recipe) : sweeps::bench_distance_impostors(request, recipe);
+  const BenchResult result = subject->bench(request, recipe);
   const AgainstVtk vtk = hulls ? against_vtk(options, request, context) : AgainstVtk{std::nullopt, "it draws volumes"};
 
   if (options.json) {
@@ -158,18 +189,16 @@ int bench(const Options& options) {
     return kDone;
   }
   const nlohmann::json& parameters = recipe.at("parameters");
-  const std::string counts = hulls ? fmt::format("{} hulls of {} samples", parameters.at("hulls").get<int>(),
-                                                 parameters.at("samples").get<int>())
-                                   : fmt::format("NITER {}", parameters.at("iterations").get<int>());
+  const std::string counts = subject->counts(parameters);
   fmt::print("{} of {}, view {}, {}, {}x{}; medians of {} frames [95 % interval]\n", options.technique, scene,
              recipe.at("view").get<std::string>(), counts, size.width, size.height, result.frames);
   print_time("frame", result.method);
   print_time("bare shader's frame", result.bare);
-  print_time("opaque passes of both, alone", result.opaque);
+  print_time("passes that both share, alone", result.opaque);
   print_ratio("frame / bare", result.ratio);
-  print_ratio("the same without opaque passes", result.own);
+  print_ratio("the same without these", result.own);
   fmt::print("  {:<34} {:9.3f}\n", "blends per pixel", result.blends_per_pixel);
-  fmt::print("  {:<34} {:9.3f}     {} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
+  fmt::print("  {:<34} {:9.3f}     {:.4g} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
              result.fetches_per_blend);
   if (result.reference) print_reference(*result.reference);
   if (hulls) print_vtk(vtk);
@@ -185,9 +214,9 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
       "bench",
       "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK or "
       "ray tracing");
-  app->add_option("technique", options->technique, "The technique: sampling_hulls or distance_impostors")->required();
+  app->add_option("technique", options->technique, "The technique: " + subject_names())->required();
   app->add_option("--scene", options->scene,
-                  "A scene's name (pellucid list scenes) or a .toml file; fog_forest or mirror_room without it");
+                  "A scene's name (pellucid list scenes) or a .toml file; the technique's own without it");
   app->add_option("-s,--set", options->settings,
                   "name=value of a parameter, scene.name for the scene's own; repeatable")
       ->allow_extra_args(false);
@@ -204,6 +233,7 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
   app->footer(
       "Example: pellucid bench sampling_hulls -s hulls=4 -s samples=8\n"
       "Example: pellucid bench distance_impostors -s iterations=2 --size 700x700\n"
+      "Example: pellucid bench geocube --scene glass_head --size 512x512\n"
       "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
       "ratio\n"
       "is the median over the blocks, so that it may differ a little from that of the medians. Times of different\n"

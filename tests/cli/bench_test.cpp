@@ -131,6 +131,8 @@ TEST_F(Bench, TimesDistanceImpostors) {
   EXPECT_TRUE(json::parse(without.out).at("reference").is_null());
   const Outcome shadows = pellucid({"bench", "distance_impostors", "-s", "shadow.size=64"});
   EXPECT_TRUE(refused(shadows, 2, {"shadow.size"}));
+  const Outcome finer = pellucid({"bench", "distance_impostors", "-s", "frame.supersampling=2"});
+  EXPECT_TRUE(refused(finer, 2, {"frame.supersampling"}));
 }
 
 TEST_F(Bench, TracesAsDeepAsTheFrameShows) {
@@ -150,6 +152,43 @@ TEST_F(Bench, TracesAsDeepAsTheFrameShows) {
   EXPECT_EQ(front.at("depth"), 1);
   EXPECT_EQ(front.at("reflections"), 0);
   EXPECT_LT(front.at("rays_per_pixel").get<double>(), both.at("rays_per_pixel").get<double>());
+}
+
+TEST_F(Bench, CountsTheFetchesOfTheGeocubesSearches) {
+  const auto measured_glass = [](const Words& more) {
+    Words words{"bench", "geocube", "--scene", "glass_ellipsoid", "--size", "64x48", "--frames", "8",
+                "-s",    "cubes=1", "-s",      "resolution=16",   "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = pellucid(words);
+    EXPECT_TRUE(succeeded(outcome));
+    return json::parse(outcome.out);
+  };
+  // Cone C's radius and both maps for the only step; where it leads out nothing more, elsewhere both maps once more.
+  const json shortest = measured_glass({"-s", "iterations=1", "-s", "refine=0", "-s", "reflections=0"});
+  const double least = shortest.at("fetches_per_blend").get<double>();
+  EXPECT_GE(least, 3);
+  EXPECT_LE(least, 5);
+  EXPECT_GT(shortest.at("blends_per_pixel").get<double>(), 0.05);
+  EXPECT_LT(shortest.at("blends_per_pixel").get<double>(), 0.5);
+  EXPECT_NEAR(shortest.at("fetches_per_pixel").get<double>(), shortest.at("blends_per_pixel").get<double>() * least,
+              1e-9);
+  expect_interval(shortest.at("ratio"), "median", "ci95_low", "ci95_high");
+  EXPECT_EQ(shortest.at("reference").at("depth"), 2);
+  EXPECT_EQ(shortest.at("reference").at("reflections"), 0);
+  // An internal reflection is a second search; every correction fetches both maps.
+  const json reflected = measured_glass({"-s", "iterations=1", "-s", "refine=0"});
+  EXPECT_GT(reflected.at("fetches_per_blend").get<double>(), 1.5 * least);
+  EXPECT_EQ(reflected.at("reference").at("depth"), 3);
+  const double two = measured_glass({"-s", "reflections=0"}).at("fetches_per_blend").get<double>();
+  const double four = measured_glass({"-s", "reflections=0", "-s", "refine=4"}).at("fetches_per_blend").get<double>();
+  EXPECT_NEAR(four - two, 4, 0.2);
+
+  for (const char* setting : {"layers=3", "stage=split", "functions=table"}) {
+    EXPECT_TRUE(refused(pellucid({"bench", "geocube", "--scene", "glass_ellipsoid", "-s", setting}), 2,
+                        {"bare shader", "functions = evaluated"}));
+  }
+  EXPECT_TRUE(refused(pellucid({"bench", "geocube", "--scene", "mirror_room", "--size", "16x12"}), 2,
+                      {"mirror_room", "no dielectric"}));
 }
 
 TEST_F(Bench, RefusesWhatItCannotTime) {

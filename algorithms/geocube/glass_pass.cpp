@@ -1,0 +1,275 @@
+#include "algorithms/geocube/glass_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "gl/error.hpp"
+
+namespace pellucid::geocube {
+namespace {
+
+const std::string kFullscreen = "algorithms/shaders/common/fullscreen.vert.glsl";
+const std::string kGlass = "algorithms/geocube/glass.frag.glsl";
+
+const Material& material_of(const GlassObject& object, const Scene& scene) {
+  return scene
+      .materials[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(object.instance())].material)];
+}
+
+}  // namespace
+
+void GlassPass::prepare(const Scene& scene) {
+  objects_.clear();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (optical(scene, scene.instances[i])) objects_.emplace_back(scene, static_cast<int>(i), parameters_);
+  }
+  function_table_ = make_function_table(parameters_.table_size);
+  fullscreen_ = gl::VertexArray("geocube fullscreen");
+}
+
+void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
+                             gl::PassTimer& timer) {
+  refresh(scene);
+  compile(forward.environment_defines());
+  {
+    auto pass = timer.pass("opaque");
+    target.framebuffer.bind();
+    forward.draw_shaded(camera, false);
+  }
+  forward.bind_environment(glass_);
+  forward.bind_environment(reflect_);
+  {
+    auto pass = timer.pass("mirrors");
+    draw_mirrors(scene, camera);
+  }
+  fit(target.color.width(), target.color.height());
+  auto pass = timer.pass("entries");
+  const gl::Framebuffer entries = entry_framebuffer(target.depth);
+  entries.bind();
+  entries.clear_color(0, {0, 0, 0, 0});
+  for (const GlassObject& object : objects_) {
+    if (object.cubes() == nullptr) continue;
+    set_search(object, material_of(object, scene), entry_);
+    draw_object(object, scene, camera, entry_);
+  }
+}
+
+void GlassPass::draw_glass(const Scene& scene, const Camera& camera, const Target& target) const {
+  target.framebuffer.bind();
+  draw_pixels(scene, camera, glass_, nullptr);
+}
+
+std::string GlassPass::reload_shaders() {
+  std::string words;
+  for (gl::Program* program : {&entry_, &glass_, &reflect_}) {
+    if (*program) words += program->reload();
+  }
+  return words;
+}
+
+FetchCounts GlassPass::count_fetches(const Scene& scene, const Camera& camera, const ForwardPass& forward) {
+  if (parameters_.functions != Functions::evaluated || parameters_.stage != SearchStage::fragment ||
+      parameters_.layers > 1)
+    throw InputError("bench: the bare shader of geocube is of functions = evaluated, stage = fragment and layers = 1");
+  gl::Defines defines = defines_;
+  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/shaders/bench/bare_glass.frag.glsl"}, defines);
+  defines.emplace_back("COUNT", "1");
+  const gl::Program count("geocube counts", {kFullscreen, kGlass}, defines);
+  forward.bind_environment(count);
+  fetch_counts_ = gl::Texture::make_2d("fetch counts", gl::Format::rgba32f, entries_.width(), entries_.height());
+  const gl::Framebuffer framebuffer("fetch counts", {&fetch_counts_});
+  framebuffer.bind();
+  framebuffer.clear_color(0, {0, 0, 0, 0});
+  draw_pixels(scene, camera, count, nullptr);
+  FetchCounts counts;
+  const std::vector<float> texels = fetch_counts_.read();
+  for (std::size_t i = 0; i < texels.size(); i += 4) {
+    counts.pixels += static_cast<double>(texels[i + 3]);
+    counts.fetches += static_cast<double>(2 * texels[i] + texels[i + 1] + texels[i + 2]);
+  }
+  return counts;
+}
+
+void GlassPass::draw_bare(const Scene& scene, const Camera& camera, const Target& target) const {
+  target.framebuffer.bind();
+  fetch_counts_.bind(7);
+  draw_pixels(scene, camera, bare_, nullptr);
+}
+
+// A material or a scale may have changed without a call of prepare().
+void GlassPass::refresh(const Scene& scene) {
+  for (GlassObject& object : objects_) {
+    if (!object.fits(scene, parameters_)) object = GlassObject(scene, object.instance(), parameters_);
+  }
+}
+
+gl::Defines GlassPass::own_defines() const {
+  gl::Defines defines;
+  if (parameters_.functions == Functions::table) defines.emplace_back("FUNCTION_TABLE", "1");
+  if (parameters_.stage == SearchStage::split) defines.emplace_back("SPLIT", "1");
+  if (parameters_.layers > 1) defines.emplace_back("LAYERS", "1");
+  std::size_t most = 1;  // what only a choice among many cubes takes is left out of the program
+  for (const GlassObject& object : objects_) {
+    if (object.cubes() != nullptr) most = std::max(most, object.cubes()->set().cubes.size());
+  }
+  defines.emplace_back("CUBES", most > 2 ? "3" : most == 2 ? "2" : "1");
+  return defines;
+}
+
+void GlassPass::compile(const gl::Defines& environment) {
+  if (parameters_.stage == SearchStage::split && parameters_.layers > 1)
+    throw InputError("geocube: stage = split takes layers = 1");
+  gl::Defines defines = own_defines();
+  defines.insert(defines.end(), environment.begin(), environment.end());
+  if (glass_ && defines == defines_) return;
+  const std::string folder = "algorithms/geocube/";
+  entry_ = gl::Program("geocube entries", {folder + "object.vert.glsl", folder + "entry.frag.glsl"}, defines);
+  glass_ = gl::Program("geocube", {kFullscreen, folder + "glass.frag.glsl"}, defines);
+  reflect_ = gl::Program("geocube mirrors", {folder + "object.vert.glsl", folder + "reflect.frag.glsl"}, environment);
+  defines_ = std::move(defines);
+}
+
+void GlassPass::fit(int width, int height) {
+  if (entries_ && entries_.width() == width && entries_.height() == height) return;
+  entries_ = gl::Texture::make_2d("entries", gl::Format::rgba32f, width, height);
+  entry_cleared_ = gl::Texture::make_2d("cleared ways", gl::Format::r32f, width, height);
+}
+
+gl::Framebuffer GlassPass::entry_framebuffer(const gl::Texture& depth) const {
+  if (parameters_.stage == SearchStage::split) return gl::Framebuffer("entries", {&entries_, &entry_cleared_}, &depth);
+  return gl::Framebuffer("entries", {&entries_}, &depth);
+}
+
+// What the search needs to know of an object and of the parameters.
+void GlassPass::set_search(const GlassObject& object, const Material& material, const gl::Program& program) const {
+  const auto diagonal = static_cast<float>(object.cubes()->set().diagonal);
+  const float sine_c = std::min(1.0F, 1.0F / material.ior);
+  object.cubes()->bind(program);
+  function_table_.bind(3);
+  program.set("relative_index", 1.0F / material.ior);
+  program.set("min_step", parameters_.min_step * diagonal);
+  program.set("cosine_c", std::sqrt(1.0F - sine_c * sine_c));
+  program.set("iterations", parameters_.iterations);
+  program.set("vertex_iterations", parameters_.vertex_iterations);
+  program.set("refine", parameters_.refine);
+  program.set("switches", parameters_.switches);
+  program.set("object_number", object.instance() + 1);
+}
+
+void GlassPass::draw_object(const GlassObject& object, const Scene& scene, const Camera& camera,
+                            const gl::Program& program) const {
+  const glm::mat4 to_world = object.to_world(scene);
+  program.use();
+  program.set("object_to_clip", camera.projection() * camera.world_to_view() * to_world);
+  program.set("eye", glm::vec3(glm::inverse(to_world) * glm::vec4(camera.view.eye, 1.0F)));
+  program.set("object_to_world", glm::mat3(to_world));
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glFrontFace(glm::determinant(glm::mat3(to_world)) < 0 ? GL_CW : GL_CCW);
+  object.draw();
+  glFrontFace(GL_CCW);
+  glDisable(GL_CULL_FACE);
+}
+
+void GlassPass::draw_mirrors(const Scene& scene, const Camera& camera) const {
+  for (const GlassObject& object : objects_) {
+    if (object.cubes() != nullptr) continue;
+    const Material& material = material_of(object, scene);
+    reflect_.set("reflectance", material.reflectance);
+    reflect_.set("metal", material.kind == SurfaceKind::metal);
+    reflect_.set("metal_n", material.metal_n);
+    reflect_.set("metal_k", material.metal_k);
+    draw_object(object, scene, camera, reflect_);
+  }
+}
+
+// The pixels of the bound framebuffer that show a dielectric; `only` one of them, or all.
+void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::Program& program,
+                            const GlassObject* only) const {
+  // The triangle lies on the far plane: where nothing was drawn before it, the shader need not even start.
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_SCISSOR_TEST);
+  entries_.bind(5);
+  entry_cleared_.bind(6);
+  program.use();
+  fullscreen_.bind();
+  for (const GlassObject& object : objects_) {
+    if (object.cubes() == nullptr || (only != nullptr && only != &object)) continue;
+    const Material& material = material_of(object, scene);
+    const glm::mat4 to_world = object.to_world(scene);
+    set_search(object, material, program);
+    program.set("eye", glm::vec3(glm::inverse(to_world) * glm::vec4(camera.view.eye, 1.0F)));
+    program.set("pixel_to_ray", pixel_to_ray(camera, to_world));
+    program.set("object_to_world", glm::mat3(to_world));
+    program.set("object_scale", std::cbrt(std::abs(glm::determinant(glm::mat3(to_world)))));
+    program.set("ior", material.ior);
+    program.set("absorption", material.absorption);
+    program.set("diagonal", static_cast<float>(object.cubes()->set().diagonal));
+    program.set("reflections", parameters_.reflections);
+    program.set("cut", parameters_.cut);
+    program.set("show", static_cast<int>(parameters_.show));
+    scissor(object, camera.projection() * camera.world_to_view() * to_world);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+}
+
+// From a pixel's (x, y, 1) to where its ray, from the eye, has gone one metre along the view's axis; object's space.
+glm::mat3 GlassPass::pixel_to_ray(const Camera& camera, const glm::mat4& to_world) const {
+  const glm::mat4 projection = camera.projection();
+  const glm::vec2 corner(1.0F / projection[0][0], 1.0F / projection[1][1]);
+  const glm::vec2 pixel = 2.0F * corner / glm::vec2(entries_.width(), entries_.height());
+  const glm::mat3 pixel_to_view(glm::vec3(pixel.x, 0, 0), glm::vec3(0, pixel.y, 0), glm::vec3(-corner, -1.0F));
+  return glm::mat3(glm::inverse(camera.world_to_view() * to_world)) * pixel_to_view;
+}
+
+// The rectangle of the screen that the object's bounds cover.
+void GlassPass::scissor(const GlassObject& object, const glm::mat4& object_to_clip) const {
+  const int width = entries_.width(), height = entries_.height();
+  glm::vec2 low(1.0F), high(-1.0F);
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2 & 1);
+    const glm::vec3 corner(glm::mix(object.solid()->low(), object.solid()->high(), share));
+    const glm::vec4 clip = object_to_clip * glm::vec4(corner, 1.0F);
+    if (clip.w <= 0) {  // beside or behind the eye
+      glScissor(0, 0, width, height);
+      return;
+    }
+    low = glm::min(low, glm::vec2(clip) / clip.w);
+    high = glm::max(high, glm::vec2(clip) / clip.w);
+  }
+  const glm::vec2 size(width, height);
+  const glm::ivec2 from(glm::floor((glm::clamp(low, -1.0F, 1.0F) * 0.5F + 0.5F) * size));
+  const glm::ivec2 to(glm::ceil((glm::clamp(high, -1.0F, 1.0F) * 0.5F + 0.5F) * size));
+  glScissor(from.x, from.y, std::max(0, to.x - from.x), std::max(0, to.y - from.y));
+}
+
+SearchErrors GlassPass::compare_searches(const Scene& scene, const Camera& camera) const {
+  const int width = entries_.width(), height = entries_.height();
+  const auto make = [&](const char* name) { return gl::Texture::make_2d(name, gl::Format::rgba32f, width, height); };
+  const gl::Texture entry = make("entries"), ray = make("rays"), point = make("exits"), normal = make("exit normals");
+  const gl::Framebuffer framebuffer("searches", {&entry, &ray, &point, &normal});
+  gl::Defines defines = own_defines();
+  defines.emplace_back("REPORT", "1");
+  const gl::Program program("geocube report", {kFullscreen, kGlass}, defines);
+  SearchErrors errors(width, height);
+  for (const GlassObject& object : objects_) {
+    if (object.cubes() == nullptr) continue;
+    framebuffer.bind();
+    framebuffer.clear_color(0, {0, 0, 0, 0});
+    draw_pixels(scene, camera, program, &object);
+    errors.add({entry.read(), ray.read(), point.read(), normal.read()}, *object.solid(),
+               static_cast<double>(material_of(object, scene).ior));
+  }
+  return errors;
+}
+
+}  // namespace pellucid::geocube
