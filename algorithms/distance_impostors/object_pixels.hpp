@@ -1,24 +1,15 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include <glm/glm.hpp>
 
-#include "algorithms/scene/bounds.hpp"
+#include "algorithms/pixel_area.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::distance_impostors {
-
-/// A part of the frame [pixels], from the bottom left, up to a depth of the depth buffer.
-struct PixelArea {
-  int x = 0, y = 0, width = 0, height = 0;
-  float farthest = 1;
-};
-/// Where a box may be seen in a frame of that size; nothing where it is not.
-std::optional<PixelArea> seen_area(const glm::mat4& box_to_clip, const Bounds& box, int width, int height);
 
 /// Which surface of an optical object each pixel shows. A rasteriser shades whole blocks of pixels for each triangle,
 /// and those of a finely tessellated object are no larger than a pixel: so a first pass keeps the surfaces, and a

@@ -1,6 +1,7 @@
 // Where rays enter the objects: the search runs in a pass of its own over whole pixels, since triangles may be smaller than
 // one. A record of four numbers, for the passes are bound by memory: depth, normal, and whose entry it is.
 #include "algorithms/geocube/entry.glsl"
+#include "algorithms/shaders/common/octahedron.glsl"
 
 in vec3 object_normal;
 #ifdef SPLIT
@@ -24,5 +25,5 @@ void main() {
   uint word = first_cubes[gl_PrimitiveID >> 2];
   int cube = int(word >> uint(8 * (gl_PrimitiveID & 3)) & 255u);
 #endif
-  entry = vec4(1.0 / gl_FragCoord.w, octahedral(object_normal), entry_tag(object_number, cube));
+  entry = vec4(1.0 / gl_FragCoord.w, to_square(object_normal), entry_tag(object_number, cube));
 }

@@ -2,6 +2,7 @@
 #include "algorithms/geocube/entry.glsl"
 #include "algorithms/geocube/search.glsl"
 #include "algorithms/shaders/common/environment.glsl"
+#include "algorithms/shaders/common/octahedron.glsl"
 #include "algorithms/shaders/common/optics.glsl"
 
 layout(binding = 5) uniform sampler2D entries;
@@ -48,7 +49,7 @@ void main() {
   vec3 ray_of_pixel = pixel_to_ray * vec3(gl_FragCoord.xy, 1.0);
   vec3 p = eye + entering.x * ray_of_pixel;
   vec3 v = normalize(ray_of_pixel);
-  vec3 n = from_octahedral(entering.yz);
+  vec3 n = from_square(entering.yz);
   // Interpolated, a normal may look away at the silhouette: there the ray grazes.
   float cosine = max(-dot(v, n), 0.0);
   if (-dot(v, n) < 0.0) n = normalize(n - 1.0001 * dot(v, n) * v);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "algorithms/pixel_area.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {
@@ -190,19 +191,17 @@ void GlassPass::draw_mirrors(const Scene& scene, const Camera& camera) const {
 // The pixels of the bound framebuffer that show a dielectric; `only` one of them, or all.
 void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::Program& program,
                             const GlassObject* only) const {
-  // The triangle lies on the far plane: where nothing was drawn before it, the shader need not even start.
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
-  glDepthMask(GL_FALSE);
-  glEnable(GL_SCISSOR_TEST);
   entries_.bind(5);
   entry_cleared_.bind(6);
   program.use();
-  fullscreen_.bind();
   for (const GlassObject& object : objects_) {
     if (object.cubes() == nullptr || (only != nullptr && only != &object)) continue;
     const Material& material = material_of(object, scene);
     const glm::mat4 to_world = object.to_world(scene);
+    const Bounds box{glm::vec3(object.solid()->low()), glm::vec3(object.solid()->high())};
+    const auto area =
+        seen_area(camera.projection() * camera.world_to_view() * to_world, box, entries_.width(), entries_.height());
+    if (!area) continue;
     set_search(object, material, program);
     program.set("eye", glm::vec3(glm::inverse(to_world) * glm::vec4(camera.view.eye, 1.0F)));
     program.set("pixel_to_ray", pixel_to_ray(camera, to_world));
@@ -214,12 +213,8 @@ void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::
     program.set("reflections", parameters_.reflections);
     program.set("cut", parameters_.cut);
     program.set("show", static_cast<int>(parameters_.show));
-    scissor(object, camera.projection() * camera.world_to_view() * to_world);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    fill_area(*area, fullscreen_);
   }
-  glDisable(GL_SCISSOR_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glDepthMask(GL_TRUE);
 }
 
 // From a pixel's (x, y, 1) to where its ray, from the eye, has gone one metre along the view's axis; object's space.
@@ -229,27 +224,6 @@ glm::mat3 GlassPass::pixel_to_ray(const Camera& camera, const glm::mat4& to_worl
   const glm::vec2 pixel = 2.0F * corner / glm::vec2(entries_.width(), entries_.height());
   const glm::mat3 pixel_to_view(glm::vec3(pixel.x, 0, 0), glm::vec3(0, pixel.y, 0), glm::vec3(-corner, -1.0F));
   return glm::mat3(glm::inverse(camera.world_to_view() * to_world)) * pixel_to_view;
-}
-
-// The rectangle of the screen that the object's bounds cover.
-void GlassPass::scissor(const GlassObject& object, const glm::mat4& object_to_clip) const {
-  const int width = entries_.width(), height = entries_.height();
-  glm::vec2 low(1.0F), high(-1.0F);
-  for (int i = 0; i < 8; ++i) {
-    const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2 & 1);
-    const glm::vec3 corner(glm::mix(object.solid()->low(), object.solid()->high(), share));
-    const glm::vec4 clip = object_to_clip * glm::vec4(corner, 1.0F);
-    if (clip.w <= 0) {  // beside or behind the eye
-      glScissor(0, 0, width, height);
-      return;
-    }
-    low = glm::min(low, glm::vec2(clip) / clip.w);
-    high = glm::max(high, glm::vec2(clip) / clip.w);
-  }
-  const glm::vec2 size(width, height);
-  const glm::ivec2 from(glm::floor((glm::clamp(low, -1.0F, 1.0F) * 0.5F + 0.5F) * size));
-  const glm::ivec2 to(glm::ceil((glm::clamp(high, -1.0F, 1.0F) * 0.5F + 0.5F) * size));
-  glScissor(from.x, from.y, std::max(0, to.x - from.x), std::max(0, to.y - from.y));
 }
 
 SearchErrors GlassPass::compare_searches(const Scene& scene, const Camera& camera) const {

@@ -54,7 +54,6 @@ class GlassPass {
   void draw_object(const GlassObject&, const Scene&, const Camera&, const gl::Program&) const;
   void draw_pixels(const Scene&, const Camera&, const gl::Program&, const GlassObject* only) const;
   glm::mat3 pixel_to_ray(const Camera&, const glm::mat4& to_world) const;
-  void scissor(const GlassObject&, const glm::mat4& object_to_clip) const;
 
   const Parameters& parameters_;
   std::vector<GlassObject> objects_;

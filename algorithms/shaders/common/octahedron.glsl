@@ -1,4 +1,4 @@
-// Unit vectors on the square that an octahedron unfolds to, [−1, 1]².
+// Directions, of any length but 0, on the square that an octahedron unfolds to, [−1, 1]² (references.bib: meyer2010).
 vec2 to_square(vec3 n) {
   vec2 upper = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
   vec2 side = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(upper, vec2(0.0)));
