@@ -20,7 +20,7 @@ namespace pellucid {
 static const std::array kTechniques{
     TechniqueInfo{"distance_impostors", "Distance impostors", "szirmaykalos2005", false,
                   "reflection and refraction by searching for rays' hits in cube maps of radiance and distance",
-                  distance_impostors::table, distance_impostors::make, true},
+                  distance_impostors::table, distance_impostors::make, true, true, true},
     TechniqueInfo{"environment_map", "Environment map", "blinn1976", true,
                   "classical environment mapping, or with a box or sphere as proxy geometry", environment_map::table,
                   environment_map::make, true},

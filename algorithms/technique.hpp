@@ -33,6 +33,8 @@ struct NativeMap {
   std::string unit;  ///< "diagonals", "deg", "steps"; empty for 0 or 1
   std::string doc;   ///< one line, no full stop
   Image values;      ///< one channel; NaN where the pixel shows no object of the technique's, or the error has no value
+  /// Of a map of classes, what 0, 1, … stand for, in snake_case: a sweep sums up the picture's error for each.
+  std::vector<std::string> classes{};
 };
 
 /// A rendering technique. A context must be current for every call but parameters().
@@ -65,6 +67,7 @@ struct TechniqueInfo {
   std::unique_ptr<Technique> (*make)() = nullptr;
   bool interfaces = false;  ///< draws mirrors, metals and dielectrics; the others refuse a scene that has some
   bool maps = false;        ///< tells its errors by pixel: Technique::native_maps()
+  bool classes = false;     ///< one of these is a map of classes
 };
 
 /// Every technique, in registry.cpp's order.

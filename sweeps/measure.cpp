@@ -14,6 +14,7 @@
 #include "gl/context.hpp"
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
+#include "sweeps/class_errors.hpp"
 #include "sweeps/provenance.hpp"
 #include "sweeps/stopping.hpp"
 #include "sweeps/worker_protocol.hpp"
@@ -173,7 +174,12 @@ void Measurer::compare(const Point& point, const std::filesystem::path& referenc
   if (!references_ || references_->folder() != references) references_ = std::make_unique<ReferenceCache>(references);
   const auto reference = references_->get(*session_, point, [&](double share) { progress_("reference", share); });
   progress_("metrics", 0);
-  put_values(result.row, reference->comparison.compare(color));
+  const ComparisonResult compared = reference->comparison.compare(color);
+  put_values(result.row, compared);
+  if (session_->technique_info().classes && compared.flip_map.width > 0) {
+    for (const NativeMap& map : session_->technique().native_maps())
+      put_class_errors(result.row, map, compared.flip_map);
+  }
   result.row["reference_step_error_max"] = reference->step_error_max;
   result.row["reference_step_error_mean"] = reference->step_error_mean;
   result.row["reference_unconverged_share"] = reference->unconverged_share;

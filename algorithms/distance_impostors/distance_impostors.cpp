@@ -21,6 +21,7 @@ class DistanceImpostors final : public Technique {
     localized_.render(scene, camera, forward, target, timer, maps, lookup_settings(parameters_));
   }
   void native_errors(nlohmann::json& out) const override { localized_.native_errors(out); }
+  std::vector<NativeMap> native_maps() const override { return localized_.native_maps(); }
   std::string reload_shaders() override { return localized_.reload_shaders(); }
 
  private:

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/distance_impostors/native_errors.hpp"
-
 namespace pellucid::distance_impostors {
 
 void Localized::prepare(const Scene& scene, const MapSettings& maps, const LookupSettings& lookup,
@@ -60,7 +58,15 @@ void Localized::native_errors(nlohmann::json& out) const {
   if (!warnings.empty()) out["warnings"] = fmt::format("{}", fmt::join(warnings, "; "));
   if (!frame_) return;
   if (caustic_settings_.enabled) compare_caustics(caustics_, *frame_->scene, out);
-  compare_hits(objects_, *frame_->scene, *frame_->forward, frame_->camera, frame_->maps, frame_->lookup, out);
+  hit_errors().write(out);
+}
+
+std::vector<NativeMap> Localized::native_maps() const {
+  return frame_ ? hit_errors().maps() : std::vector<NativeMap>();
+}
+
+HitErrors Localized::hit_errors() const {
+  return {objects_, *frame_->scene, *frame_->forward, frame_->camera, frame_->maps, frame_->lookup};
 }
 
 }  // namespace pellucid::distance_impostors

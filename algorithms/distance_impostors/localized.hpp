@@ -7,6 +7,7 @@
 
 #include "algorithms/distance_impostors/caustics.hpp"
 #include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include "algorithms/distance_impostors/native_errors.hpp"
 #include "algorithms/technique.hpp"
 
 namespace pellucid::distance_impostors {
@@ -20,9 +21,12 @@ class Localized {
   void render(const Scene&, const Camera&, ForwardPass&, const Target&, gl::PassTimer&, const MapSettings&,
               const LookupSettings&);
   void native_errors(nlohmann::json&) const;
+  std::vector<NativeMap> native_maps() const;
   std::string reload_shaders() { return objects_.reload_shaders() + caustics_.reload_shaders(); }
 
  private:
+  HitErrors hit_errors() const;
+
   // The last frame, for native_errors().
   struct Frame {
     const Scene* scene;
