@@ -43,13 +43,13 @@ struct Parameters {
                                      "scheme: bisections",
                               .when = Change::program});
     visit(PARAM(scheme), {.cite = "Sec. 2.2",
-                          .doc = "root finding: secant, false position, or (beyond the paper) linear search and "
-                                 "bisection",
+                          .doc = "root finding: secant, false position, or (beyond the paper) linear search, and "
+                                 "bisection or false position within the crossing",
                           .when = Change::program,
-                          .choices = "secant|false_position|linear"});
+                          .choices = "secant|false_position|linear|linear_false_position"});
     visit(PARAM(linear_steps), {.range = {2, 1024},
                                 .cite = "beyond the paper",
-                                .doc = "steps of the linear scheme, equal in angle",
+                                .doc = "steps of the linear schemes, equal in angle",
                                 .when = Change::program});
     visit(PARAM(cube_size), {.range = {64, 2048},
                              .cite = "Sec. 6",

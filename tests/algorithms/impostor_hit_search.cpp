@@ -114,7 +114,7 @@ TEST(ImpostorHitSearch, APlaneInACubeMapIsExactToATexel) {
 TEST(ImpostorHitSearch, EverySchemeConvergesInARoundRoom) {
   Random random(3);
   const auto distance = [](const glm::dvec3&) { return 1.7; };
-  for (const Scheme scheme : {Scheme::secant, Scheme::false_position, Scheme::linear}) {
+  for (const Scheme scheme : {Scheme::secant, Scheme::false_position, Scheme::linear, Scheme::linear_false_position}) {
     double before = 1e9;
     for (const int iterations : {0, 2, 6, 14}) {
       Random rays(4);
@@ -143,7 +143,8 @@ TEST(ImpostorHitSearch, FromTheReferencePointTheDirectionIsEnough) {
   const auto distance = [](const glm::dvec3& d) { return box_distance(d); };
   for (int i = 0; i < 200; ++i) {
     const glm::dvec3 R = random.direction();
-    for (const Scheme scheme : {Scheme::secant, Scheme::false_position, Scheme::linear}) {
+    for (const Scheme scheme :
+         {Scheme::secant, Scheme::false_position, Scheme::linear, Scheme::linear_false_position}) {
       for (const int iterations : {-1, 0, 3})
         EXPECT_LT(glm::distance(find_hit(glm::dvec3(0), R, distance, {iterations, scheme, 16}), box_hit({}, R)), 1e-9);
     }
@@ -181,7 +182,8 @@ TEST(ImpostorHitSearch, BeyondTheWallsItStaysFinite) {
   for (int i = 0; i < 5000; ++i) {
     const glm::dvec3 far = random.direction() * random.between(0.1, 30);
     const glm::dvec3 x = i % 3 == 0 ? box_hit({}, glm::normalize(far)) : far, R = random.direction();
-    for (const Scheme scheme : {Scheme::secant, Scheme::false_position, Scheme::linear}) {
+    for (const Scheme scheme :
+         {Scheme::secant, Scheme::false_position, Scheme::linear, Scheme::linear_false_position}) {
       for (const int iterations : {-1, 0, 2, 32}) {
         const glm::dvec3 l = find_hit(x, R, distance, {iterations, scheme, 32});
         EXPECT_TRUE(std::isfinite(l.x) && std::isfinite(l.y) && std::isfinite(l.z));
@@ -221,7 +223,7 @@ TEST(ImpostorHitSearch, ShaderAgreesWithItsTwin) {
     const double reach = i % 5 == 0 ? 0 : i % 7 == 0 ? 4 : 1.2;  // at o, beyond the walls, within
     rays.push_back({glm::vec4(glm::vec3(random.in_box(1) * reach), 0), glm::vec4(glm::vec3(random.direction()), 0)});
   }
-  for (const Scheme scheme : {Scheme::secant, Scheme::false_position, Scheme::linear}) {
+  for (const Scheme scheme : {Scheme::secant, Scheme::false_position, Scheme::linear, Scheme::linear_false_position}) {
     for (const int iterations : {-1, 0, 1, 2, 5, 12}) {
       for (const int room : {0, 1}) {
         const HitSearch search{iterations, scheme, 24};
