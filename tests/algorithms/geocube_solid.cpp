@@ -156,6 +156,19 @@ TEST(GeocubeLayers, EveryIntervalAlongADirectionIsKept) {
   EXPECT_EQ(one.cubes[0].dropped_share, 0) << "one layer keeps what is seen, and drops nothing";
 }
 
+TEST(GeocubePlacement, TakesTheMiddleWhereEveryPlaceSeesAll) {
+  // Of an off-centre ball all is seen from everywhere inside, from its middle straight on.
+  Mesh ball = make_sphere(1.0F, 48);
+  for (glm::vec3& p : ball.positions)
+    p += glm::vec3(2.0F, -1.0F, 0.5F);
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    const Placement one = place_cubes(Solid(ball), {.cubes = 1, .candidates = 300, .samples = 600, .seed = seed});
+    ASSERT_EQ(one.centers.size(), 1U);
+    EXPECT_EQ(one.unseen[0], 0);
+    EXPECT_LT(glm::distance(one.centers[0], glm::dvec3(2.0, -1.0, 0.5)), 0.1) << seed;
+  }
+}
+
 TEST(GeocubePlacement, FewCentresSeeATorusAndAStar) {
   const Solid star(make_star({}, 84));
   const Placement one = place_cubes(star, {.cubes = 1, .candidates = 200, .samples = 600});
