@@ -177,13 +177,13 @@ Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, co
   const int corrections = found ? options.refine : 1;
   for (int k = 0; k < corrections; ++k) {
     if (found) {
-      // To the tangent plane at S, or half-way where that leads out of the known interval.
+      // To the tangent plane at S, or half-way where that leads out of the known interval by more than δ.
       const glm::vec3 n(s.plane);
       const float slope = glm::dot(h, n);
       const glm::vec3 to_s = maps.center(cube) + s.bounds.x * v - (p + t * h);
-      float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
-      if (!(next >= inside && next <= outside)) next = 0.5F * (inside + std::min(outside, t));
-      t = next;
+      const float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
+      const bool near = next >= inside - options.min_step && next <= outside + options.min_step;
+      t = near ? std::clamp(next, inside, outside) : 0.5F * (inside + std::min(outside, t));
     }
     const glm::vec3 w = p + t * h - maps.center(cube);
     const float l = std::max(glm::length(w), 1e-20F);

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +76,36 @@ TEST(GeocubeSearch, ErrorsOfAnEllipsoidFallAtLeastWithTheTexel) {
     }
     EXPECT_LT(errors.bounded, 0.01);
     last = errors.point;
+  }
+}
+
+// A ball of radius 1 seen from its middle: sphere D is the ball itself.
+struct BallMaps {
+  float distance = 1;  // as rounding leaves it
+  int count() const { return 1; }
+  glm::vec3 center(int /*cube*/) const { return glm::vec3(0.0F); }
+  float sphere(int /*cube*/) const { return 1.0F; }
+  CubeSample fetch(int /*cube*/, const glm::vec3& direction) const {
+    return {glm::vec4(distance, 1, 1, 0), glm::vec4(glm::normalize(direction), 0)};
+  }
+};
+
+// Sphere D leads to the exit itself, where rounding decides which side a point lies on: that must not send a ray back
+// to the middle of its way.
+TEST(GeocubeSearch, RoundingAtTheExitMovesItByNoMoreThanRounding) {
+  SearchOptions search;
+  search.min_step = 0.005F;
+  for (const float distance : {1.0F - 5e-7F, 1.0F - 1e-7F, 1.0F, 1.0F + 1e-7F}) {
+    Random random(5);
+    double worst = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const glm::dvec3 n = random_direction(random), around = random_direction(random);
+      const glm::dvec3 incident = glm::dot(around, n) > 0 ? -around : around;
+      const glm::dvec3 h = glm::normalize(glm::refract(incident, n, 1 / 1.5));
+      const Exit found = find_exit(BallMaps{distance}, glm::vec3(n), glm::vec3(n), glm::vec3(h), 0, search);
+      worst = std::max(worst, std::abs(static_cast<double>(found.length) + 2 * glm::dot(n, h)));
+    }
+    EXPECT_LT(worst, 2e-5) << distance;
   }
 }
 
