@@ -76,6 +76,7 @@ Axis axis_of(const std::string& field) {
       {"epsilon", {"thickness about the tangent plane", "diagonals", Scale::linear, false}},
       {"scene.ior", {"index of refraction", "", Scale::linear, false}},
       {"iterations", {"iterations", "", Scale::linear, false}},
+      {"linear_steps", {"linear steps", "", Scale::linear, false}},
       {"cube_size", {"side of a cube map's face", "texels", Scale::linear, false}},
       {"refresh_frames", {"frames from one drawing of the maps to the next", "", Scale::linear, false}},
   };

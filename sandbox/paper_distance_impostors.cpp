@@ -24,11 +24,16 @@ constexpr PaperPicture kFig5[] = {
     {"box", "", "environment_map", kBox,
      "Not in the paper's figure: Bjorke's box, which is the room itself here and so the best that the map allows."},
 };
+constexpr Words kSteps[] = {"reference_point=scene", "refresh=once", "scheme=linear_false_position", "linear_steps=8",
+                            "iterations=2"};
 constexpr PaperPicture kFig6[] = {
     {"classical", "classical", "environment_map", kClassical, "The map of the room's middle, read by direction alone."},
     {"niter_0", "localized", "distance_impostors", kNiter0, "The second guess, without iteration."},
-    {"niter_3", "localized", "distance_impostors", kNiter3, "Converged, but for what the reference point cannot see."},
+    {"niter_3", "localized", "distance_impostors", kNiter3,
+     "Three iterations; some rays take the wall behind the box."},
     {"niter_8", "", "distance_impostors", kNiter8, "Not in the paper: more iterations do not find it either."},
+    {"steps", "", "distance_impostors", kSteps,
+     "Not in the paper: 8 linear steps before 2 iterations take the first surface on most rays."},
     {"linear", "", "distance_impostors", kLinear,
      "Not in the paper: a search from the near end takes the first surface on the ray, not another."},
 };

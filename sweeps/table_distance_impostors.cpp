@@ -19,14 +19,19 @@ struct Method {
   std::string label;
   std::string technique;
   Values values;
+  std::string block_suffix;  ///< behind the figure's name
 };
 
 Method classical(const char* label, const char* parallax) {
-  return {label, "environment_map", {{"parallax", std::string(parallax)}}};
+  return {label, "environment_map", {{"parallax", std::string(parallax)}}, "_environment_map"};
 }
 
 Method impostors(std::int64_t iterations) {
-  return {fmt::format("NITER {}", iterations), "distance_impostors", {{"iterations", iterations}}};
+  return {fmt::format("NITER {}", iterations), "distance_impostors", {{"iterations", iterations}}, ""};
+}
+
+Method stepped(std::int64_t steps) {
+  return {fmt::format("{} steps, NITER 2", steps), "distance_impostors", {{"linear_steps", steps}}, "_steps"};
 }
 
 std::vector<Method> reflections() {
@@ -36,13 +41,21 @@ std::vector<Method> reflections() {
   return all;
 }
 
+std::vector<Method> reflections_past_a_box() {
+  std::vector<Method> all = reflections();
+  for (const std::int64_t steps : {4, 8})
+    all.push_back(stepped(steps));
+  return all;
+}
+
 std::vector<Method> refractions() {
   std::vector<Method> all{classical("classical", "none")};
   for (std::int64_t bounces = 1; bounces <= 2; ++bounces) {
     for (std::int64_t n = 0; n <= 1; ++n) {
       all.push_back({fmt::format("{}, NITER {}", bounces == 1 ? "single" : "double", n),
                      "distance_impostors",
-                     {{"bounces", bounces}, {"iterations", n}}});
+                     {{"bounces", bounces}, {"iterations", n}},
+                     ""});
     }
   }
   return all;
@@ -69,7 +82,7 @@ const PublishedFigure& published(int number) {
        {{"in the middle", {{"scene.ball_x", 0.0}}},
         {"off-centre", {{"scene.ball_x", 1.6}}},
         {"in a corner", {{"scene.ball_x", 2.7}}}}},
-      {6, "the room with a box that hides a part of it", reflections(), {{"", {}}}},
+      {6, "the room with a box that hides a part of it", reflections_past_a_box(), {{"", {}}}},
       {7, "refraction by a ball", refractions(), {{"", {}}}},
   };
   for (const PublishedFigure& figure : all) {
@@ -87,6 +100,20 @@ constexpr Quantity kQuantities[] = {
     {"FLIP on the object", "flip_mean_mask"},     {"RMSE on the object", "rmse_mask"},
     {"FLIP of the frame", "flip_mean"},           {"mean error of the hit [m]", "hit_error_m_mean"},
     {"share not converged", "unconverged_share"}, {"share of hits hidden from the reference point", "hidden_share"}};
+
+// Fig. 6's residual: which hits are wrong and why, and how much of the picture's error is theirs.
+constexpr Quantity kResidual[] = {{"share of hits: right", "hits_right_share"},
+                                  {"share of hits: on another surface", "hits_other_surface_share"},
+                                  {"share of hits: hidden", "hits_hidden_share"},
+                                  {"share of hits: on no surface", "hits_unconverged_share"},
+                                  {"part of the hits' error: right", "hits_right_error_share"},
+                                  {"part of the hits' error: on another surface", "hits_other_surface_error_share"},
+                                  {"part of the hits' error: hidden", "hits_hidden_error_share"},
+                                  {"part of the hits' error: on no surface", "hits_unconverged_error_share"},
+                                  {"part of FLIP: right", "flip_share_right"},
+                                  {"part of FLIP: on another surface", "flip_share_other_surface"},
+                                  {"part of FLIP: hidden", "flip_share_hidden"},
+                                  {"part of FLIP: on no surface", "flip_share_unconverged"}};
 
 Table figure_table(int figure_number, const TableInfo& info, const ChosenRows& all) {
   const PublishedFigure& figure = published(figure_number);
@@ -106,12 +133,13 @@ Table figure_table(int figure_number, const TableInfo& info, const ChosenRows& a
     for (const Method& method : figure.methods) {
       Values values = method.values;
       values.insert(values.end(), stand.values.begin(), stand.values.end());
-      const std::string block = method.technique == "environment_map" ? prefix + "_environment_map" : prefix;
       const std::string name = stand.label.empty() ? method.label : fmt::format("{}, {}", method.label, stand.label);
-      places.push_back(make_place(name, find_row_of(chosen, block, values)));
+      places.push_back(make_place(name, find_row_of(chosen, prefix + method.block_suffix, values)));
     }
     const std::string where = stand.label.empty() ? "" : ", " + stand.label;
-    for (const Quantity& quantity : kQuantities) {
+    std::vector<Quantity> quantities(std::begin(kQuantities), std::end(kQuantities));
+    if (figure_number == 6) quantities.insert(quantities.end(), std::begin(kResidual), std::end(kResidual));
+    for (const Quantity& quantity : quantities) {
       table.rows.push_back(
           our_row(quantity.label + where, places, 3, [&](const json& row) { return number(row, quantity.field); }));
     }
@@ -129,6 +157,10 @@ Table figure_table(int figure_number, const TableInfo& info, const ChosenRows& a
            {"rmse_mask", "flip_mean", "rmse", "hit_error_m_mean", "hit_error_m_median", "direction_error_deg_median",
             "unconverged_share", "hidden_share", "fps", "frame_ms_median", "frame_ms_ci95_low", "frame_ms_ci95_high"})
         record.emplace_back(field, real_field(place, field));
+      if (figure_number == 6) {
+        for (const Quantity& quantity : kResidual)
+          record.emplace_back(quantity.field, real_field(place, quantity.field));
+      }
       add_origin(record, place, table.sweep);
       table.records.push_back(std::move(record));
     }
@@ -143,6 +175,14 @@ Table figure_table(int figure_number, const TableInfo& info, const ChosenRows& a
     table.notes.emplace_back(
         "FLIP (mean) and RMSE are against the ray-traced scene; on the object: over the pixels that show it. Box and "
         "sphere: Bjorke's proxies, beyond the paper. Not converged: |l| / |l'| more than 1 % off 1.");
+    if (figure_number == 6) {
+      table.notes.emplace_back(
+          "Right: seen from the reference point in the direction of the true hit, to two texels; on another surface: "
+          "converged, off the true hit's plane; hidden: the reference point does not see the true hit; on no surface: "
+          "the "
+          "rest. Steps: linear search before false position, beyond the paper; NITER 2 fetches 4 times, with n steps "
+          "n + 3 times.");
+    }
     for (std::string& note : outcome_notes(everywhere))
       table.notes.push_back(std::move(note));
   }

@@ -122,6 +122,21 @@ TEST(ImpostorTables, Fig5TellsPlacesOfTheBallApart) {
   EXPECT_FALSE(row_of(table, "FLIP on the object, in a corner").cells.at(4).value);
 }
 
+TEST(ImpostorTables, Fig6SaysWhereItsResidualLies) {
+  const std::vector<json> rows{
+      row("distance_impostors_figures", "fig6", "distance_impostors", "mirror_room_box",
+          {{"iterations", 2}, {"flip_mean_mask", 0.08}, {"hits_hidden_share", 0.015}, {"flip_share_hidden", 0.1}}),
+      row("distance_impostors_figures", "fig6_steps", "distance_impostors", "mirror_room_box",
+          {{"iterations", 2}, {"linear_steps", 8}, {"flip_mean_mask", 0.06}, {"flip_share_other_surface", 0.02}})};
+  const Table table = make_table("distance_impostors.fig6", rows);
+  EXPECT_EQ(table.rows.front().cells.size(), 9U);
+  EXPECT_EQ(row_of(table, "part of FLIP: hidden").cells.at(5).value, 0.1);
+  EXPECT_EQ(row_of(table, "share of hits: hidden").cells.at(5).value, 0.015);
+  EXPECT_EQ(row_of(table, "FLIP on the object").cells.at(8).value, 0.06);
+  EXPECT_EQ(row_of(table, "part of FLIP: on another surface").cells.at(8).value, 0.02);
+  EXPECT_FALSE(row_of(table, "FLIP on the object").cells.at(7).value) << "4 steps are not measured";
+}
+
 TEST(ImpostorTables, RatesGiveTheRangeThatThePaperNames) {
   const Table table = make_table(
       "distance_impostors.rates",
