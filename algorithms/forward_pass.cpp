@@ -275,6 +275,11 @@ void ForwardPass::bind_lights() const {
 }
 
 void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
+  draw_opaque(camera, keep_depth);
+  draw_background(camera);
+}
+
+void ForwardPass::draw_opaque(const Camera& camera, bool keep_depth) const {
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
@@ -292,11 +297,16 @@ void ForwardPass::draw_shaded(const Camera& camera, bool keep_depth) const {
   opaque_.set("world_to_clip", world_to_clip);
   opaque_.set("eye", camera.view.eye);
   draw_visible(world_to_clip, Objects::lambertian);
+  glDepthMask(GL_TRUE);
+}
 
-  // Last, where the depth is still that of the far plane, so that nothing is shaded that objects hide.
+void ForwardPass::draw_background(const Camera& camera) const {
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_FALSE);
   background_.use();
-  background_.set("clip_to_world", glm::inverse(world_to_clip));
+  background_.set("clip_to_world", glm::inverse(camera.projection() * camera.world_to_view()));
   background_.set("eye", camera.view.eye);
   bind_environment(background_);
   fullscreen_.bind();

@@ -27,9 +27,14 @@ class ForwardPass {
   /// geometry too.
   void update(const Scene&, bool meshes);
 
-  /// Environment and shaded opaque objects into the bound framebuffer. Unless `keep_depth`, depth is cleared and
-  /// written; with it, the depth of an earlier pass over the same geometry is reused and only visible fragments are
-  /// shaded. A second colour attachment, if there is one, receives the distance from the eye [m].
+  /// Shaded opaque objects into the bound framebuffer. Unless `keep_depth`, depth is cleared and written; with it, the
+  /// depth of an earlier pass over the same geometry is reused and only visible fragments are shaded. A second colour
+  /// attachment, if there is one, receives the distance from the eye [m].
+  void draw_opaque(const Camera&, bool keep_depth) const;
+  /// The environment, where the bound framebuffer's depth is still that of the far plane: after whatever would hide it,
+  /// so that no pixel of it is shaded in vain.
+  void draw_background(const Camera&) const;
+  /// Both.
   void draw_shaded(const Camera&, bool keep_depth) const;
 
   /// Objects alone, with another fragment shader behind `opaque.vert.glsl`; sets its uniform `world_to_clip`, clears

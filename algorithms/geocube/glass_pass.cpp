@@ -36,7 +36,7 @@ void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPa
   {
     auto pass = timer.pass("opaque");
     target.framebuffer.bind();
-    forward.draw_shaded(camera, false);
+    forward.draw_opaque(camera, false);
   }
   forward.bind_environment(glass_);
   forward.bind_environment(reflect_);
@@ -45,15 +45,20 @@ void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPa
     draw_mirrors(scene, camera);
   }
   fit(target.color.width(), target.color.height());
-  auto pass = timer.pass("entries");
-  const gl::Framebuffer entries = entry_framebuffer(target.depth);
-  entries.bind();
-  entries.clear_color(0, {0, 0, 0, 0});
-  for (const GlassObject& object : objects_) {
-    if (object.cubes() == nullptr) continue;
-    set_search(object, material_of(object, scene), entry_);
-    draw_object(object, scene, camera, entry_);
+  {
+    auto pass = timer.pass("entries");
+    const gl::Framebuffer entries = entry_framebuffer(target.depth);
+    entries.bind();
+    entries.clear_color(0, {0, 0, 0, 0});
+    for (const GlassObject& object : objects_) {
+      if (object.cubes() == nullptr) continue;
+      set_search(object, material_of(object, scene), entry_);
+      draw_object(object, scene, camera, entry_);
+    }
   }
+  auto pass = timer.pass("background");
+  target.framebuffer.bind();
+  forward.draw_background(camera);
 }
 
 void GlassPass::draw_glass(const Scene& scene, const Camera& camera, const Target& target) const {

@@ -26,8 +26,8 @@ class GlassPass {
 
   /// The cubes of every object. Throws InputError as GlassObject does.
   void prepare(const Scene&);
-  /// Opaque objects, mirrors and metals, and where rays enter dielectrics. Throws InputError for parameters that do not
-  /// go together.
+  /// Opaque objects, mirrors and metals, where rays enter dielectrics, and what is seen past all of these. Throws
+  /// InputError for parameters that do not go together.
   void draw_entries(const Scene&, const Camera&, ForwardPass&, const Target&, gl::PassTimer&);
   /// The searches and their light, over draw_entries() of the same scene and camera.
   void draw_glass(const Scene&, const Camera&, const Target&) const;
