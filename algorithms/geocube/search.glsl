@@ -114,7 +114,8 @@ Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
       float slope = dot(h, s.normal);
       vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
       float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
-      bool near = next >= inside - min_step && next <= outside + min_step;
+      float rounding = 0.01 * min_step;
+      bool near = next >= inside - rounding && next <= outside + rounding;
       t = near ? clamp(next, inside, outside) : 0.5 * (inside + min(outside, t));
     }
     vec3 w = p + t * h - cube_spheres[cube].xyz;

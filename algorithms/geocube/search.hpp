@@ -177,12 +177,13 @@ Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, co
   const int corrections = found ? options.refine : 1;
   for (int k = 0; k < corrections; ++k) {
     if (found) {
-      // To the tangent plane at S, or half-way where that leads out of the known interval by more than δ.
+      // To the tangent plane at S, or half-way where that leads out of the known interval by more than rounding may.
       const glm::vec3 n(s.plane);
       const float slope = glm::dot(h, n);
       const glm::vec3 to_s = maps.center(cube) + s.bounds.x * v - (p + t * h);
       const float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
-      const bool near = next >= inside - options.min_step && next <= outside + options.min_step;
+      const float rounding = 0.01F * options.min_step;
+      const bool near = next >= inside - rounding && next <= outside + rounding;
       t = near ? std::clamp(next, inside, outside) : 0.5F * (inside + std::min(outside, t));
     }
     const glm::vec3 w = p + t * h - maps.center(cube);
