@@ -87,7 +87,7 @@ void ForwardPass::gather_instances(const Scene& scene) {
 }
 
 ForwardPass::InstanceAttributes ForwardPass::attributes(const Scene& scene, const Instance& instance) {
-  const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+  const Material& material = material_of(scene, instance);
   const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(instance.to_world)));
   return {instance.to_world,
           {normal_to_world[0], normal_to_world[1], normal_to_world[2]},

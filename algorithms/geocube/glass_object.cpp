@@ -20,10 +20,6 @@ struct Vertex {
   float first_cube;
 };
 
-const Material& material_of(const Scene& scene, int instance) {
-  return scene.materials[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(instance)].material)];
-}
-
 glm::mat3 linear_part(const Scene& scene, int instance) {
   return glm::mat3(scene.instances[static_cast<std::size_t>(instance)].to_world);
 }

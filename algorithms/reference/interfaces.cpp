@@ -71,10 +71,7 @@ struct InterfaceTracer::State {
     return described(geometry.intersect_from(start.position, left, side, direction), start.position, direction);
   }
 
-  double ior(int instance) const {
-    const Instance& object = scene.instances[static_cast<std::size_t>(instance)];
-    return static_cast<double>(scene.materials[static_cast<std::size_t>(object.material)].ior);
-  }
+  double ior(int instance) const { return static_cast<double>(material_of(scene, instance).ior); }
 
   Split split(const InterfaceHit& hit, const glm::dvec3& direction) const {
     const double side = hit.front ? 1.0 : -1.0;

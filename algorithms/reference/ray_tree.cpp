@@ -37,8 +37,7 @@ bool Solids::contains(int instance) const {
 }
 
 glm::dvec3 RayTree::absorbed(const Branch& branch, double path_m) const {
-  const Instance& solid = scene_->instances[static_cast<std::size_t>(branch.inside.innermost())];
-  const glm::dvec3 absorption(scene_->materials[static_cast<std::size_t>(solid.material)].absorption);
+  const glm::dvec3 absorption(material_of(*scene_, branch.inside.innermost()).absorption);
   glm::dvec3 left(1.0);
   for (int c = 0; c < 3; ++c) {
     if (absorption[c] > 0.0) left[c] = std::exp(-absorption[c] * path_m);  // an open solid's path is infinite
@@ -68,7 +67,7 @@ void RayTree::push(Branch child, const glm::dvec3& weight, const TreeLimits& lim
 
 void RayTree::branch(const Branch& parent, const Hit& hit, const SurfacePoint& point, const TreeLimits& limits,
                      Scratch& scratch, TreeTally& tally) const {
-  const Material& material = scene_->materials[static_cast<std::size_t>(hit.instance->material)];
+  const Material& material = material_of(*scene_, *hit.instance);
   Branch child = parent;
   child.from = hit;
   child.start = point.position;
@@ -132,7 +131,7 @@ Solids RayTree::solids_at(const glm::dvec3& point) const {
   glm::dvec3 origin = point;
   for (int i = 0; hit.instance != nullptr && i < kMostCrossings; ++i) {
     const SurfacePoint at = surface_at(*scene_, *geometry_, hit, origin, direction);
-    if (scene_->materials[static_cast<std::size_t>(hit.instance->material)].kind == SurfaceKind::dielectric) {
+    if (material_of(*scene_, *hit.instance).kind == SurfaceKind::dielectric) {
       auto found = std::find_if(open.begin(), open.end(), [&](const Crossing& c) { return c.instance == hit.index; });
       if (found == open.end()) found = open.insert(open.end(), {hit.index, 0});
       found->inwards += at.front ? 1 : -1;

@@ -17,7 +17,7 @@ SurfacePoint surface_at(const Scene& scene, const Geometry& geometry, const Hit&
                         const glm::dvec3& direction) {
   const Instance& instance = *hit.instance;
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-  const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+  const Material& material = material_of(scene, instance);
   SurfacePoint point;
   point.distance = hit.distance;
   point.position = origin + hit.distance * direction;

@@ -174,9 +174,17 @@ struct SceneInfo {
   std::string name, title, description, module;  ///< module: the folder it lies in
 };
 
+/// What `instance` is made of; in place of it, its index among the scene's.
+inline const Material& material_of(const Scene& scene, const Instance& instance) {
+  return scene.materials[static_cast<std::size_t>(instance.material)];
+}
+inline const Material& material_of(const Scene& scene, int instance) {
+  return material_of(scene, scene.instances[static_cast<std::size_t>(instance)]);
+}
+
 /// True if `instance` has a mirror's, a metal's or a dielectric's material.
 inline bool optical(const Scene& scene, const Instance& instance) {
-  return scene.materials[static_cast<std::size_t>(instance.material)].optical();
+  return material_of(scene, instance).optical();
 }
 
 /// Scenes that are embedded in the binary (`algorithms/*/scenes/*.toml`), read cheaply: for `pellucid list`.
