@@ -1,17 +1,14 @@
 // Fresnel's two shares of the environment at the first interface.
 #include "algorithms/shaders/common/environment.glsl"
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/common/mirror.glsl"
 
 in vec3 world_position;
 in vec3 world_normal;
 
 uniform vec3 eye;
 uniform bool reflection;
-uniform int kind;  // 0 dielectric, 1 metal, 2 mirror
+uniform bool dielectric;
 uniform float ior;
-uniform vec3 reflectance;
-uniform vec3 metal_n;
-uniform vec3 metal_k;
 
 layout(location = 0) out vec4 radiance;
 
@@ -22,9 +19,8 @@ void main() {
   float cosine = max(-dot(v, n), 0.0);
   if (-dot(v, n) < 0.0) n = normalize(n - 1.0001 * dot(v, n) * v);
   vec3 mirrored = environment_radiance(reflect(v, n));
-  if (kind > 0) {
-    vec3 share = kind == 1 ? reflectance * fresnel_metal(cosine, metal_n, metal_k) : reflectance;
-    radiance = vec4(share * mirrored, 1.0);
+  if (!dielectric) {
+    radiance = vec4(mirror_share(cosine) * mirrored, 1.0);
     return;
   }
   float share = fresnel_dielectric(cosine, 1.0 / ior);

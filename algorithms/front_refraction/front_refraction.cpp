@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "algorithms/forward_pass.hpp"
+#include "algorithms/mirror.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::front_refraction {
@@ -41,12 +42,10 @@ class FrontRefraction final : public Technique {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const Instance& instance = scene.instances[i];
       if (!optical(scene, instance)) continue;
-      const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
-      program_.set("kind", material.kind == SurfaceKind::dielectric ? 0 : material.kind == SurfaceKind::metal ? 1 : 2);
+      const Material& material = material_of(scene, instance);
+      program_.set("dielectric", material.kind == SurfaceKind::dielectric);
       program_.set("ior", material.ior);
-      program_.set("reflectance", material.reflectance);
-      program_.set("metal_n", material.metal_n);
-      program_.set("metal_k", material.metal_k);
+      set_mirror(program_, material);
       glFrontFace(glm::determinant(glm::mat3(instance.to_world)) < 0 ? GL_CW : GL_CCW);
       forward.draw_instance(scene, static_cast<int>(i), world_to_clip, program_);
     }

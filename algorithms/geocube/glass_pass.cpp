@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "algorithms/mirror.hpp"
 #include "algorithms/pixel_area.hpp"
 #include "gl/error.hpp"
 
@@ -12,11 +13,6 @@ namespace {
 
 const std::string kFullscreen = "algorithms/shaders/common/fullscreen.vert.glsl";
 const std::string kGlass = "algorithms/geocube/glass.frag.glsl";
-
-const Material& material_of(const GlassObject& object, const Scene& scene) {
-  return scene
-      .materials[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(object.instance())].material)];
-}
 
 }  // namespace
 
@@ -52,7 +48,7 @@ void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPa
     entries.clear_color(0, {0, 0, 0, 0});
     for (const GlassObject& object : objects_) {
       if (object.cubes() == nullptr) continue;
-      set_search(object, material_of(object, scene), entry_);
+      set_search(object, material_of(scene, object.instance()), entry_);
       draw_object(object, scene, camera, entry_);
     }
   }
@@ -184,11 +180,7 @@ void GlassPass::draw_object(const GlassObject& object, const Scene& scene, const
 void GlassPass::draw_mirrors(const Scene& scene, const Camera& camera) const {
   for (const GlassObject& object : objects_) {
     if (object.cubes() != nullptr) continue;
-    const Material& material = material_of(object, scene);
-    reflect_.set("reflectance", material.reflectance);
-    reflect_.set("metal", material.kind == SurfaceKind::metal);
-    reflect_.set("metal_n", material.metal_n);
-    reflect_.set("metal_k", material.metal_k);
+    set_mirror(reflect_, material_of(scene, object.instance()));
     draw_object(object, scene, camera, reflect_);
   }
 }
@@ -201,7 +193,7 @@ void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::
   program.use();
   for (const GlassObject& object : objects_) {
     if (object.cubes() == nullptr || (only != nullptr && only != &object)) continue;
-    const Material& material = material_of(object, scene);
+    const Material& material = material_of(scene, object.instance());
     const glm::mat4 to_world = object.to_world(scene);
     const Bounds box{glm::vec3(object.solid()->low()), glm::vec3(object.solid()->high())};
     const auto area =
@@ -246,7 +238,7 @@ SearchErrors GlassPass::compare_searches(const Scene& scene, const Camera& camer
     framebuffer.clear_color(0, {0, 0, 0, 0});
     draw_pixels(scene, camera, program, &object);
     errors.add({entry.read(), ray.read(), point.read(), normal.read()}, *object.solid(),
-               static_cast<double>(material_of(object, scene).ior));
+               static_cast<double>(material_of(scene, object.instance()).ior));
   }
   return errors;
 }

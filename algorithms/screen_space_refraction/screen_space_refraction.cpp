@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algorithms/forward_pass.hpp"
+#include "algorithms/mirror.hpp"
 #include "algorithms/reference/geometry.hpp"
 #include "algorithms/scene/bounds.hpp"
 #include "gl/program.hpp"
@@ -79,16 +80,13 @@ class ScreenSpaceRefraction final : public Technique {
       forward.draw_shaded(camera, false);
     }
     for (const Instance& instance : scene.instances) {
-      const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+      const Material& material = material_of(scene, instance);
       if (material.kind == SurfaceKind::dielectric) {
         draw_far_side(instance, timer);
         draw_refraction(instance, material, target, timer);
       } else if (material.optical()) {
         auto pass = timer.pass("reflect");
-        reflect_.set("reflectance", material.reflectance);
-        reflect_.set("metal", material.kind == SurfaceKind::metal);
-        reflect_.set("metal_n", material.metal_n);
-        reflect_.set("metal_k", material.metal_k);
+        set_mirror(reflect_, material);
         target.framebuffer.bind();
         glEnable(GL_DEPTH_TEST);
         glDepthFunc(GL_LEQUAL);
