@@ -1,6 +1,5 @@
 // The geocube's searches in GLSL against their C++ twins.
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "algorithms/geocube/search.hpp"
 #include "gl/error.hpp"
 #include "gl/program.hpp"
+#include "tests/algorithms/compute.hpp"
 #include "tests/algorithms/geocube_solids.hpp"
 #include "tests/algorithms/rendered.hpp"
 
@@ -67,24 +67,14 @@ std::vector<Output> run_on_gpu(const Case& c, const SearchOptions& search, const
   const gl::Program program("geocube twins", {"tests/algorithms/geocube_search.comp.glsl"}, defines);
   const CubeTextures textures("twins", c.set);
   const gl::Texture functions = make_function_table(512);
-  const gl::Buffer in("inputs", std::span<const Input>(c.inputs));
-  const gl::Buffer out("outputs", c.inputs.size() * sizeof(Output));
-  program.use();
   textures.bind(program);
   functions.bind(3);
-  in.bind_storage(0);
-  out.bind_storage(1);
   program.set("iterations", search.iterations);
   program.set("refine", search.refine);
   program.set("switches", search.switches);
   program.set("min_step", search.min_step);
   program.set("cosine_c", search.cosine_c);
-  glDispatchCompute(static_cast<GLuint>((c.inputs.size() + 63) / 64), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  std::vector<Output> outputs(c.inputs.size());
-  const auto bytes = out.read();
-  std::memcpy(outputs.data(), bytes.data(), bytes.size());
-  return outputs;
+  return test::compute<Output>(program, c.inputs);
 }
 
 // Share of the rays that both find alike. Rounding may send a grazing ray another way.

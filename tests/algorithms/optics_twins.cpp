@@ -1,6 +1,5 @@
 // The laws of optics: GLSL against C++, and C++ against what is known of them.
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <random>
 
@@ -9,6 +8,7 @@
 #include "algorithms/optics.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
+#include "tests/algorithms/compute.hpp"
 
 namespace pellucid {
 namespace {
@@ -27,21 +27,6 @@ struct Output {
   glm::vec3 transmitted;
   float pad;
 };
-
-std::vector<Output> run_on_gpu(const std::vector<Input>& inputs) {
-  const gl::Program program("optics twins", {"tests/algorithms/optics.comp.glsl"});
-  const gl::Buffer in("inputs", std::span<const Input>(inputs));
-  const gl::Buffer out("outputs", inputs.size() * sizeof(Output));
-  in.bind_storage(0);
-  out.bind_storage(1);
-  program.use();
-  glDispatchCompute(static_cast<GLuint>((inputs.size() + 63) / 64), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  std::vector<Output> outputs(inputs.size());
-  const auto bytes = out.read();
-  std::memcpy(outputs.data(), bytes.data(), bytes.size());
-  return outputs;
-}
 
 // Every tenth at the ends of the cosine, every seventh an interface between equal media.
 std::vector<Input> inputs() {
@@ -65,7 +50,8 @@ std::vector<Input> inputs() {
 TEST(OpticsTwins, AgreeOnRandomInterfaces) {
   const gl::Context context;
   const std::vector<Input> in = inputs();
-  const std::vector<Output> out = run_on_gpu(in);
+  const gl::Program program("optics twins", {"tests/algorithms/optics.comp.glsl"});
+  const std::vector<Output> out = test::compute<Output>(program, in);
   int total = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const Input& q = in[i];

@@ -1,5 +1,4 @@
 // GLSL functions against their C++ twins.
-#include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include "algorithms/shadows.hpp"
 #include "algorithms/valid_path.hpp"
 #include "gl/program.hpp"
+#include "tests/algorithms/compute.hpp"
 #include "tests/algorithms/rendered.hpp"
 
 namespace pellucid {
@@ -26,21 +26,6 @@ struct Input {
 struct Output {
   float voxel, corrected, step, path, sample_at, half_way_behind, half_way_before, pad;
 };
-
-std::vector<Output> run_on_gpu(const std::vector<Input>& inputs) {
-  const gl::Program program("twins", {"tests/algorithms/opacity.comp.glsl"});
-  const gl::Buffer in("inputs", std::span<const Input>(inputs));
-  const gl::Buffer out("outputs", inputs.size() * sizeof(Output));
-  in.bind_storage(0);
-  out.bind_storage(1);
-  program.use();
-  glDispatchCompute(static_cast<GLuint>((inputs.size() + 63) / 64), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  std::vector<Output> outputs(inputs.size());
-  const auto bytes = out.read();
-  std::memcpy(outputs.data(), bytes.data(), bytes.size());
-  return outputs;
-}
 
 // Random media and paths, and with them every declared extreme of N and of the sample's place.
 std::vector<Input> inputs() {
@@ -76,7 +61,8 @@ std::vector<Input> inputs() {
 TEST(ShaderTwins, OpacityAndValidPath) {
   test::use_context();
   const std::vector<Input> in = inputs();
-  const std::vector<Output> out = run_on_gpu(in);
+  const gl::Program program("twins", {"tests/algorithms/opacity.comp.glsl"});
+  const std::vector<Output> out = test::compute<Output>(program, in);
   int clipped = 0, held_at_back = 0, held_at_front = 0;
   for (std::size_t k = 0; k < in.size(); ++k) {
     const Input& q = in[k];
@@ -164,15 +150,7 @@ TEST(ShaderTwins, PathWithFilteredOcclusion) {
     if (nearest_edge > 1e-4) all.push_back(path);  // else rounding decides on which side of an edge a point lies
   }
   const gl::Program program("path", {"tests/algorithms/path.comp.glsl"});
-  const gl::Buffer in("paths", std::span<const Path>(all)), out("outputs", all.size() * sizeof(glm::vec4));
-  in.bind_storage(0);
-  out.bind_storage(1);
-  program.use();
-  glDispatchCompute(static_cast<GLuint>((all.size() + 63) / 64), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  std::vector<glm::vec4> outputs(all.size());
-  const auto bytes = out.read();
-  std::memcpy(outputs.data(), bytes.data(), bytes.size());
+  const std::vector<glm::vec4> outputs = test::compute<glm::vec4>(program, all);
   for (std::size_t k = 0; k < all.size(); ++k) {
     double unused = 0;
     const glm::dvec4 expected = composite(all[k], unused);

@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "algorithms/shadow_maps.hpp"
 #include "gl/program.hpp"
+#include "tests/algorithms/compute.hpp"
 #include "tests/algorithms/rendered.hpp"
 #include "tests/algorithms/scenes.hpp"
 
@@ -43,15 +43,7 @@ TEST(Shadows, ShaderFunctionsAgreeWithTheirTwins) {
                                     : unit(random)});
   }
   const gl::Program program("shadow twins", {"tests/algorithms/shadows.comp.glsl"});
-  const gl::Buffer in("inputs", std::span<const Input>(inputs)), out("outputs", inputs.size() * sizeof(glm::vec4));
-  in.bind_storage(0);
-  out.bind_storage(1);
-  program.use();
-  glDispatchCompute(static_cast<GLuint>((inputs.size() + 63) / 64), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  std::vector<glm::vec4> outputs(inputs.size());
-  const auto bytes = out.read();
-  std::memcpy(outputs.data(), bytes.data(), bytes.size());
+  const std::vector<glm::vec4> outputs = test::compute<glm::vec4>(program, inputs);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     const Input& q = inputs[k];
     // E[d²] − E[d]² loses digits when the variance is small: an error of 1e-7 in it against (depth − mean)².
