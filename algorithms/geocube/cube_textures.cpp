@@ -1,7 +1,6 @@
 #include "algorithms/geocube/cube_textures.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -81,16 +80,12 @@ CubeTextures::CubeTextures(const std::string& label, const CubeSet& set) : set_(
   bounds_ = make_map(label + " bounds", set, &CubeLayer::bounds);
   planes_ = make_map(label + " planes", set, &CubeLayer::planes);
   if (set.options.layers > 1) inners_ = make_map(label + " inner planes", set, &CubeLayer::inners);
-  std::vector<std::uint32_t> words((set.first_cube.size() + 3) / 4);
-  std::memcpy(words.data(), set.first_cube.data(), set.first_cube.size());  // little-endian, as GL's machines are
-  first_cubes_ = gl::Buffer(label + " first cubes", std::span<const std::uint32_t>(words));
 }
 
 void CubeTextures::bind(const gl::Program& program) const {
   bounds_.bind(1);
   planes_.bind(2);
   if (inners_) inners_.bind(4);
-  first_cubes_.bind_storage(2);
   program.set("cube_count", static_cast<int>(set_.cubes.size()));
   program.set("cube_layers", set_.options.layers);
   for (std::size_t i = 0; i < set_.cubes.size(); ++i)

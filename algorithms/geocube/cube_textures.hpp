@@ -19,14 +19,13 @@ class CubeTextures {
   CubeTextures() = default;
   /// Throws InputError when the device has not the memory.
   explicit CubeTextures(const std::string& label, const CubeSet&);
-  /// Textures to units 1, 2 and 4, first cubes to storage buffer 2, centres and counts to the program's uniforms.
+  /// Textures to units 1, 2 and 4, centres and counts to the program's uniforms.
   void bind(const gl::Program&) const;
   const CubeSet& set() const { return set_; }
 
  private:
   CubeSet set_;
   gl::Texture bounds_, planes_, inners_;
-  gl::Buffer first_cubes_;
 };
 
 /// C* and S* as a table of size² for functions.glsl, linear between its nodes (Sec. 4).

@@ -4,13 +4,12 @@
 #include "algorithms/shaders/common/octahedron.glsl"
 
 in vec3 object_normal;
+flat in int last_cube;
 #ifdef SPLIT
 in float cleared;
-flat in int last_cube;
 #endif
 
-layout(std430, binding = 2) readonly buffer FirstCubes { uint first_cubes[]; };  // by triangle, four to a word
-uniform int object_number;                                                       // from 1
+uniform int object_number;  // from 1
 
 layout(location = 0) out vec4 entry;
 #ifdef SPLIT
@@ -19,11 +18,7 @@ layout(location = 1) out vec4 entry_cleared;
 
 void main() {
 #ifdef SPLIT
-  int cube = last_cube;
   entry_cleared = vec4(cleared, 0.0, 0.0, 0.0);
-#else
-  uint word = first_cubes[gl_PrimitiveID >> 2];
-  int cube = int(word >> uint(8 * (gl_PrimitiveID & 3)) & 255u);
 #endif
-  entry = vec4(1.0 / gl_FragCoord.w, to_square(object_normal), entry_tag(object_number, cube));
+  entry = vec4(1.0 / gl_FragCoord.w, to_square(object_normal), entry_tag(object_number, last_cube));
 }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,11 +18,6 @@
 
 namespace pellucid::geocube {
 namespace {
-
-struct Vertex {
-  glm::vec3 position, normal;
-  float first_cube;
-};
 
 glm::mat3 linear_part(const Scene& scene, int instance) {
   return glm::mat3(scene.instances[static_cast<std::size_t>(instance)].to_world);
@@ -72,6 +71,35 @@ std::vector<glm::vec3> hand_cubes(const Scene& scene, int instance, const Parame
 
 }  // namespace
 
+GlassMesh with_first_cubes(const Mesh& mesh, std::span<const std::uint8_t> first_cubes) {
+  constexpr int kNone = -1;
+  GlassMesh result;
+  result.triangles = mesh.triangles;
+  std::vector<int> cube_of(mesh.positions.size(), kNone);
+  result.vertices.resize(mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    result.vertices[i] = {mesh.positions[i], mesh.normals[i], 0};
+  std::map<std::pair<std::uint32_t, int>, std::uint32_t> twins;  // of a vertex, for a further cube
+  for (std::size_t t = 0; t < result.triangles.size(); ++t) {
+    const int cube = t < first_cubes.size() ? first_cubes[t] : 0;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t vertex = result.triangles[t][c];
+      if (cube_of[vertex] == kNone) {
+        cube_of[vertex] = cube;
+        result.vertices[vertex].first_cube = static_cast<float>(cube);
+      }
+      if (cube_of[vertex] == cube) continue;
+      const auto [twin, added] = twins.try_emplace({vertex, cube}, static_cast<std::uint32_t>(result.vertices.size()));
+      if (added) {
+        result.vertices.push_back(result.vertices[vertex]);
+        result.vertices.back().first_cube = static_cast<float>(cube);
+      }
+      result.triangles[t][c] = twin->second;
+    }
+  }
+  return result;
+}
+
 GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& parameters) : instance_(instance) {
   const Instance& placed = scene.instances[static_cast<std::size_t>(instance)];
   const Material& material = material_of(scene, instance);
@@ -85,28 +113,25 @@ GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& par
     changed = transformed(*mesh, linear);
     mesh = &changed;
   }
-  std::vector<float> first(mesh->positions.size(), 0.0F);
+  GlassMesh drawn;
   if (dielectric_) {
     solid_ = std::make_unique<Solid>(*mesh, parameters.holes);
     std::vector<glm::dvec3> centers;
     place(scene, parameters, *mesh, centers);
     const CubeSet set = cached_cubes(*solid_, *mesh, centers, options_of(parameters, ior_), cache_folder());
     cubes_ = std::make_unique<CubeTextures>(mesh->name, set);
-    for (std::size_t t = 0; t < std::min(mesh->triangles.size(), set.first_cube.size()); ++t) {
-      for (int c = 0; c < 3; ++c)
-        first[mesh->triangles[t][c]] = static_cast<float>(set.first_cube[t]);
-    }
+    drawn = with_first_cubes(*mesh, set.first_cube);
+  } else {
+    drawn = with_first_cubes(*mesh, {});
   }
-  std::vector<Vertex> vertices(mesh->positions.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    vertices[i] = {mesh->positions[i], mesh->normals[i], first[i]};
-  vertices_ = gl::Buffer(mesh->name, std::span<const Vertex>(vertices));
-  indices_ = gl::Buffer(mesh->name + " indices", std::span<const glm::uvec3>(mesh->triangles));
-  array_ = gl::VertexArray(
-      mesh->name, vertices_, sizeof(Vertex),
-      {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 1, offsetof(Vertex, first_cube)}},
-      &indices_);
-  index_count_ = static_cast<int>(mesh->triangles.size() * 3);
+  vertices_ = gl::Buffer(mesh->name, std::span<const GlassVertex>(drawn.vertices));
+  indices_ = gl::Buffer(mesh->name + " indices", std::span<const glm::uvec3>(drawn.triangles));
+  array_ = gl::VertexArray(mesh->name, vertices_, sizeof(GlassVertex),
+                           {{0, 3, offsetof(GlassVertex, position)},
+                            {1, 3, offsetof(GlassVertex, normal)},
+                            {2, 1, offsetof(GlassVertex, first_cube)}},
+                           &indices_);
+  index_count_ = static_cast<int>(drawn.triangles.size() * 3);
 }
 
 void GlassObject::place(const Scene& scene, const Parameters& p, const Mesh& mesh, std::vector<glm::dvec3>& centers) {

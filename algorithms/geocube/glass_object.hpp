@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "algorithms/geocube/cube_textures.hpp"
@@ -11,6 +13,18 @@
 #include "gl/objects.hpp"
 
 namespace pellucid::geocube {
+
+struct GlassVertex {
+  glm::vec3 position, normal;
+  float first_cube;
+};
+struct GlassMesh {
+  std::vector<GlassVertex> vertices;
+  std::vector<glm::uvec3> triangles;  ///< in the mesh's order
+};
+/// The mesh with the cube in which a ray starts that enters at a triangle (Sec. 2.3), told by all of its vertices:
+/// those between triangles of different cubes become several. Triangles beyond `first_cubes` start in cube 0.
+GlassMesh with_first_cubes(const Mesh&, std::span<const std::uint8_t> first_cubes);
 
 /// An optical object of the scene with what its drawing needs; a dielectric with its cubes. The object's space is the
 /// mesh's, or where the instance is scaled unevenly, the world's but for the place: a circular cone must stay one.
