@@ -59,9 +59,12 @@ void main() {
   vec3 weight = vec3(1.0 - reflected_share);
 
   int cube = tagged_cube(entering.w);
-  float start = 0.0;
 #ifdef SPLIT
-  start = max(texelFetch(entry_cleared, pixel, 0).x, min_step);
+  float start = max(texelFetch(entry_cleared, pixel, 0).x, min_step);
+#elif defined(LAYERS)
+  float start = 0.0;  // that search takes its own first step
+#else
+  float start = first_step(p, n, h, cube);
 #endif
 #ifdef REPORT
   entry = vec4(p, h != vec3(0.0) ? 1.0 : 0.0);
@@ -91,7 +94,7 @@ void main() {
     h = reflect(h, n);
     p = found.point;
     cube = found.cube;
-    start = 0.0;
+    start = next_start(found, h);
   }
 #ifdef COUNT
   fetched = vec4(both_fetched, bounds_fetched, lights_fetched, 1.0);

@@ -18,6 +18,7 @@ struct Exit {
   int steps;
   int cube;
   bool bounded;
+  float clear;  // R_C there
 };
 
 float allowed_step(CubeSample s, vec3 v, float l, vec3 h) {
@@ -96,9 +97,19 @@ void march(vec3 p, vec3 h, int most, inout int cube, inout float t, inout float 
   }
 }
 
+// From the plane at S back to the surface, or half-way where that leads out of the known interval.
+float corrected(vec3 p, vec3 h, int cube, vec3 v, CubeSample s, float t, float inside, float outside) {
+  float slope = dot(h, s.normal);
+  vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
+  float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
+  float rounding = 0.01 * min_step;
+  bool near = next >= inside - rounding && next <= outside + rounding;
+  return near ? clamp(next, inside, outside) : 0.5 * (inside + min(outside, t));
+}
+
 // `start`: how far the way is known to be clear.
-Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
-  float t = start > 0.0 ? start : first_step(p, normal, h, cube);
+Exit find_exit(vec3 p, vec3 h, int cube, float start) {
+  float t = start;
   Exit result;
   result.steps = 0;
   float inside = 0.0;
@@ -110,14 +121,7 @@ Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
   result.bounded = !found;
   int corrections = found ? refine : 1;
   for (int k = 0; k < corrections; ++k) {
-    if (found) {
-      float slope = dot(h, s.normal);
-      vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
-      float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
-      float rounding = 0.01 * min_step;
-      bool near = next >= inside - rounding && next <= outside + rounding;
-      t = near ? clamp(next, inside, outside) : 0.5 * (inside + min(outside, t));
-    }
+    if (found) t = corrected(p, h, cube, v, s, t, inside, outside);
     vec3 w = p + t * h - cube_spheres[cube].xyz;
     float l = max(length(w), 1e-20);
     v = w / l;
@@ -131,6 +135,7 @@ Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
   result.path = t;
   result.cube = cube;
   result.normal = normalize(s.normal);
+  result.clear = s.bounds.w;
   return result;
 }
 
@@ -138,11 +143,16 @@ Exit find_exit(vec3 p, vec3 normal, vec3 h, int cube, float start) {
 #include "algorithms/geocube/layers.glsl"
 #endif
 
-// By whichever kind of cubes there is.
+// By whichever kind of cubes there is; `start` as first_step() and next_start() tell it.
 Exit trace_inside(vec3 p, vec3 normal, vec3 h, int cube, float start) {
 #ifdef LAYERS
   return find_exit_in_layers(p, normal, h, cube);
 #else
-  return find_exit(p, normal, h, cube, start);
+  return find_exit(p, h, cube, start);
 #endif
+}
+
+// Of a ray that goes on from an exit: its last fetch told how far cone C clears the way.
+float next_start(Exit from, vec3 h) {
+  return -dot(h, from.normal) < cosine_c - 1e-4 ? min_step : max(min_step, from.clear);
 }

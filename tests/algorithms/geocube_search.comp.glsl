@@ -23,7 +23,8 @@ void main() {
   if (k >= inputs.length()) return;
   Input q = inputs[k];
   int cube = int(q.point_cube.w);
-  Exit e = trace_inside(q.point_cube.xyz, q.normal.xyz, q.direction.xyz, cube, 0.0);
+  float start = first_step(q.point_cube.xyz, q.normal.xyz, q.direction.xyz, cube);
+  Exit e = trace_inside(q.point_cube.xyz, q.normal.xyz, q.direction.xyz, cube, start);
   outputs[k] = Output(vec4(e.point, e.path), vec4(e.normal, float(e.steps)),
                       vec4(float(e.cube), e.bounded ? 1.0 : 0.0,
                            cone_step(q.functions.x, q.functions.y, q.functions.z, 0.8, q.functions.w),
