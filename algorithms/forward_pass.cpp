@@ -8,10 +8,6 @@
 namespace pellucid {
 namespace {
 
-struct Vertex {
-  glm::vec3 position, normal, color;
-};
-
 // Of all cameras and lights of a frame the culled instances are kept: a point light has six.
 constexpr std::size_t kKeptViews = 1 + 6 * kMaxLights;
 
@@ -62,12 +58,12 @@ void ForwardPass::upload_meshes(const Scene& scene) {
   meshes_.clear();
   mesh_names_.clear();
   for (const Mesh& mesh : scene.meshes) {
-    std::vector<Vertex> vertices(mesh.positions.size());
+    std::vector<ObjectVertex> vertices(mesh.positions.size());
     Vertices out;
     for (std::size_t i = 0; i < vertices.size(); ++i)
       vertices[i] = {mesh.positions[i], mesh.normals[i], mesh.colors.empty() ? glm::vec3(1.0F) : mesh.colors[i]};
     out.bounds = mesh_bounds(mesh);
-    out.vertices = gl::Buffer(mesh.name + " vertices", std::span<const Vertex>(vertices));
+    out.vertices = gl::Buffer(mesh.name + " vertices", std::span<const ObjectVertex>(vertices));
     out.indices = gl::Buffer(mesh.name + " indices", std::span<const glm::uvec3>(mesh.triangles));
     out.index_count = static_cast<int>(mesh.triangles.size() * 3);
     meshes_.push_back(std::move(out));
@@ -86,7 +82,7 @@ void ForwardPass::gather_instances(const Scene& scene) {
         attributes(scene, instance));
 }
 
-ForwardPass::InstanceAttributes ForwardPass::attributes(const Scene& scene, const Instance& instance) {
+InstanceAttributes ForwardPass::attributes(const Scene& scene, const Instance& instance) {
   const Material& material = material_of(scene, instance);
   const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(instance.to_world)));
   return {instance.to_world,
@@ -99,21 +95,7 @@ ForwardPass::Batch ForwardPass::make_batch(std::size_t mesh, std::span<const Ins
   Batch batch;
   batch.instance_count = static_cast<int>(instances.size());
   batch.instances = gl::Buffer(mesh_names_[mesh] + " instances", instances);
-  batch.array = gl::VertexArray(
-      mesh_names_[mesh], meshes_[mesh].vertices, sizeof(Vertex),
-      {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 3, offsetof(Vertex, color)}},
-      &meshes_[mesh].indices);
-  const std::size_t normals = offsetof(InstanceAttributes, normal_to_world);
-  batch.array.add_instanced(batch.instances, sizeof(InstanceAttributes),
-                            {{3, 4, 0},
-                             {4, 4, sizeof(glm::vec4)},
-                             {5, 4, 2 * sizeof(glm::vec4)},
-                             {6, 4, 3 * sizeof(glm::vec4)},
-                             {7, 3, normals},
-                             {8, 3, normals + sizeof(glm::vec3)},
-                             {9, 3, normals + 2 * sizeof(glm::vec3)},
-                             {10, 3, offsetof(InstanceAttributes, albedo)},
-                             {11, 3, offsetof(InstanceAttributes, emission)}});
+  batch.array = make_object_array(mesh_names_[mesh], meshes_[mesh].vertices, meshes_[mesh].indices, batch.instances);
   return batch;
 }
 

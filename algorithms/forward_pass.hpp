@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/object_vertices.hpp"
 #include "algorithms/scene/bounds.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/shadow_maps.hpp"
@@ -79,11 +80,6 @@ class ForwardPass {
     gl::Buffer vertices, indices;
     int index_count = 0;
     Bounds bounds;  // of the mesh
-  };
-  struct InstanceAttributes {
-    glm::mat4 to_world;
-    glm::vec3 normal_to_world[3];
-    glm::vec3 albedo, emission;
   };
   struct Batch {
     gl::Buffer instances;

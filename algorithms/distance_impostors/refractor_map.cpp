@@ -3,20 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/object_vertices.hpp"
+
 namespace pellucid::distance_impostors {
-namespace {
-
-struct Vertex {
-  glm::vec3 position, normal, color;
-};
-// What cube.vert.glsl takes of an instance; here it changes nothing.
-struct Unmoved {
-  glm::mat4 to_world{1.0F};
-  glm::vec3 normal_to_world[3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  glm::vec3 albedo{0.0F}, emission{0.0F};
-};
-
-}  // namespace
 
 RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
     : center_(choose_center(mesh)),
@@ -24,7 +13,7 @@ RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
       map_(gl::Texture::make_cube("refractor map of " + mesh.name, gl::Format::rgba32f, size)) {
   // One object alone leaves a vertex shader nothing to win.
   const CubeLayers pass = layers == CubeLayers::vertex ? CubeLayers::geometry : layers;
-  std::vector<Vertex> vertices(mesh.positions.size());
+  std::vector<ObjectVertex> vertices(mesh.positions.size());
   float reach = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     vertices[i] = {mesh.positions[i], mesh.normals[i], glm::vec3(1)};
@@ -35,25 +24,11 @@ RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
     map_.clear({0, 0, 0, 1});
     return;
   }
-  const gl::Buffer vertex_buffer("refractor vertices", std::span<const Vertex>(vertices));
+  const gl::Buffer vertex_buffer("refractor vertices", std::span<const ObjectVertex>(vertices));
   const gl::Buffer index_buffer("refractor indices", std::span<const glm::uvec3>(mesh.triangles));
-  const Unmoved unmoved;
-  const gl::Buffer instance("refractor instance", std::span<const Unmoved>(&unmoved, 1));
-  gl::VertexArray array(
-      "refractor", vertex_buffer, sizeof(Vertex),
-      {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, normal)}, {2, 3, offsetof(Vertex, color)}},
-      &index_buffer);
-  const std::size_t normals = offsetof(Unmoved, normal_to_world);
-  array.add_instanced(instance, sizeof(Unmoved),
-                      {{3, 4, 0},
-                       {4, 4, sizeof(glm::vec4)},
-                       {5, 4, 2 * sizeof(glm::vec4)},
-                       {6, 4, 3 * sizeof(glm::vec4)},
-                       {7, 3, normals},
-                       {8, 3, normals + sizeof(glm::vec3)},
-                       {9, 3, normals + 2 * sizeof(glm::vec3)},
-                       {10, 3, offsetof(Unmoved, albedo)},
-                       {11, 3, offsetof(Unmoved, emission)}});
+  const InstanceAttributes unmoved;
+  const gl::Buffer instance("refractor instance", std::span<const InstanceAttributes>(&unmoved, 1));
+  const gl::VertexArray array = make_object_array("refractor", vertex_buffer, index_buffer, instance);
   const gl::Texture depth = gl::Texture::make_cube("refractor depth", gl::Format::depth32f, size);
   const CubeTarget target("refractor", {&map_}, &depth);
   const CubeCamera camera{center_, 1e-3F * reach, 1.05F * reach, pass};
