@@ -3,36 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "algorithms/distance_impostors/light_map_chart.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {
 
 constexpr const char* kVertexStage = "algorithms/shaders/common/opaque.vert.glsl";
-constexpr int kPartsPerUnit = 1024;  // a receiver's part is coded behind the binary point of its number
-constexpr int kMargin = 2;           // texels around a part
 // From nearer than this to the bounding sphere's surface no one frustum sees the object.
 constexpr float kWidestHalfAngleDeg = 80;
-
-struct Vertex {
-  glm::vec3 position;
-  glm::vec3 place;  // u, v, receiver and part
-  glm::vec3 color;
-};
-// As opaque.vert.glsl takes it. Normals stay as they are, since places come in their stead.
-struct Attributes {
-  glm::mat4 to_world{1.0F};
-  glm::vec3 normal_to_world[3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  glm::vec3 albedo{0.0F}, emission{0.0F};
-};
 
 struct Sphere {
   glm::vec3 center{0.0F};
@@ -78,7 +62,7 @@ void Caustics::warn(std::string text) {
 void Caustics::prepare(const Scene& scene, const CausticSettings& settings, const MapSettings& maps,
                        const DynamicObjects& objects) {
   settings_ = settings;
-  receivers_.clear();
+  receivers_ = {};
   places_.clear();
   place_targets_.clear();
   warnings_.clear();
@@ -87,23 +71,8 @@ void Caustics::prepare(const Scene& scene, const CausticSettings& settings, cons
   if (std::none_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.casts_shadow; }))
     warn(fmt::format("scene '{}' has no light that casts shadows, so that there is no caustic", scene.name));
 
-  int left_out = 0;
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    if (optical(scene, instance)) continue;
-    const auto chart =
-        make_chart(scene.meshes[static_cast<std::size_t>(instance.mesh)], settings.light_map_size, kMargin);
-    if (!chart) {
-      warn(fmt::format("'{}' receives no caustic: its texture coordinates do not keep its surface apart",
-                       scene.meshes[static_cast<std::size_t>(instance.mesh)].name));
-    } else if (receivers_.size() < static_cast<std::size_t>(kMaxReceivers)) {
-      add_receiver(scene, static_cast<int>(i), *chart);
-    } else {
-      ++left_out;
-    }
-  }
-  if (left_out > 0)
-    warn(fmt::format("{} opaque objects beyond the first {} receive no caustic", left_out, kMaxReceivers));
+  for (std::string& text : receivers_.prepare(scene, settings.light_map_size))
+    warn(std::move(text));
 
   const int size = settings.map_size;
   photon_framebuffers_.clear();
@@ -114,7 +83,7 @@ void Caustics::prepare(const Scene& scene, const CausticSettings& settings, cons
   for (int exit = 0; exit < exits; ++exit)
     photon_framebuffers_.push_back(
         gl::Framebuffer::layered("photons", {&photon_places_, &photon_powers_}, &photon_depth_, exit));
-  const int layers = std::max(1, static_cast<int>(receivers_.size()));
+  const int layers = std::max(1, receivers_.count());
   light_maps_ = gl::Texture::make_2d_array("light maps", gl::Format::rgba32f, settings.light_map_size,
                                            settings.light_map_size, layers);
   light_maps_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
@@ -141,93 +110,6 @@ void Caustics::prepare(const Scene& scene, const CausticSettings& settings, cons
   if (points_.id() == 0) points_ = gl::VertexArray("photons");
 }
 
-void Caustics::add_receiver(const Scene& scene, int instance, const LightMapChart& chart) {
-  const Instance& object = scene.instances[static_cast<std::size_t>(instance)];
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(object.mesh)];
-  std::vector<Vertex> vertices(mesh.positions.size());
-  const auto number = static_cast<float>(receivers_.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const float part = static_cast<float>(chart.parts[i]) / static_cast<float>(kPartsPerUnit);
-    vertices[i] = {mesh.positions[i], glm::vec3(chart.places[i], number + part),
-                   mesh.colors.empty() ? glm::vec3(1) : mesh.colors[i]};
-  }
-  Receiver& receiver = receivers_.emplace_back();
-  receiver.instance = instance;
-  receiver.places = chart.places;
-  receiver.index_count = static_cast<int>(mesh.triangles.size() * 3);
-  receiver.vertices = gl::Buffer("receiver vertices", std::span<const Vertex>(vertices));
-  receiver.indices = gl::Buffer("receiver indices", std::span<const glm::uvec3>(mesh.triangles));
-  receiver.attributes = gl::Buffer("receiver attributes", sizeof(Attributes), GL_DYNAMIC_DRAW);
-  receiver.unshaded = gl::Buffer("receiver place", sizeof(Attributes), GL_DYNAMIC_DRAW);
-  receiver.densities = gl::Buffer("receiver densities", vertices.size() * sizeof(Vertex), GL_DYNAMIC_DRAW);
-  const auto make_array = [&](const gl::Buffer& buffer, const gl::Buffer& attributes) {
-    gl::VertexArray array(
-        "receiver", buffer, sizeof(Vertex),
-        {{0, 3, offsetof(Vertex, position)}, {1, 3, offsetof(Vertex, place)}, {2, 3, offsetof(Vertex, color)}},
-        &receiver.indices);
-    const std::size_t normals = offsetof(Attributes, normal_to_world);
-    array.add_instanced(attributes, sizeof(Attributes),
-                        {{3, 4, 0},
-                         {4, 4, sizeof(glm::vec4)},
-                         {5, 4, 2 * sizeof(glm::vec4)},
-                         {6, 4, 3 * sizeof(glm::vec4)},
-                         {7, 3, normals},
-                         {8, 3, normals + sizeof(glm::vec3)},
-                         {9, 3, normals + 2 * sizeof(glm::vec3)},
-                         {10, 3, offsetof(Attributes, albedo)},
-                         {11, 3, offsetof(Attributes, emission)}});
-    return array;
-  };
-  receiver.array = make_array(receiver.vertices, receiver.attributes);
-  receiver.place_array = make_array(receiver.densities, receiver.unshaded);
-}
-
-void Caustics::place_receivers(const Scene& scene) {
-  for (std::size_t r = 0; r < receivers_.size(); ++r) {
-    Receiver& receiver = receivers_[r];
-    const Instance& instance = scene.instances[static_cast<std::size_t>(receiver.instance)];
-    Attributes attributes;
-    attributes.to_world = instance.to_world;
-    attributes.albedo = glm::vec3(1);
-    receiver.unshaded.upload(std::span<const Attributes>(&attributes, 1));
-    attributes.albedo = scene.materials[static_cast<std::size_t>(instance.material)].albedo * instance.tint;
-    receiver.attributes.upload(std::span<const Attributes>(&attributes, 1));
-    if (const glm::mat3 axes(instance.to_world); axes != receiver.axes) measure_density(scene, receiver, axes);
-  }
-}
-
-// About a vertex: the area of its triangles over the area that they take of the light map.
-void Caustics::measure_density(const Scene& scene, Receiver& receiver, const glm::mat3& axes) {
-  const Instance& instance = scene.instances[static_cast<std::size_t>(receiver.instance)];
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-  std::vector<double> area(mesh.positions.size(), 0), taken(mesh.positions.size(), 0);
-  for (const glm::uvec3& t : mesh.triangles) {
-    const glm::vec3 ab = axes * (mesh.positions[t.y] - mesh.positions[t.x]);
-    const glm::vec3 ac = axes * (mesh.positions[t.z] - mesh.positions[t.x]);
-    const glm::vec2 uv = receiver.places[t.y] - receiver.places[t.x], uw = receiver.places[t.z] - receiver.places[t.x];
-    for (int i = 0; i < 3; ++i) {
-      area[t[i]] += static_cast<double>(glm::length(glm::cross(ab, ac)));
-      taken[t[i]] += static_cast<double>(std::abs(uv.x * uw.y - uv.y * uw.x));
-    }
-  }
-  std::vector<Vertex> vertices(mesh.positions.size());
-  const std::vector<std::byte> drawn = receiver.vertices.read();
-  std::memcpy(vertices.data(), drawn.data(), drawn.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    vertices[i].color = glm::vec3(taken[i] > 0 ? static_cast<float>(area[i] / taken[i]) : 0.0F);
-  receiver.densities.upload(std::span<const Vertex>(vertices));
-  receiver.axes = axes;
-}
-
-void Caustics::draw_receivers(gl::VertexArray Receiver::*array, int copies) const {
-  constexpr GLuint kInstanceBinding = 1;
-  for (const Receiver& receiver : receivers_) {
-    (receiver.*array).bind();
-    glVertexArrayBindingDivisor((receiver.*array).id(), kInstanceBinding, static_cast<GLuint>(copies));
-    glDrawElementsInstanced(GL_TRIANGLES, receiver.index_count, GL_UNSIGNED_INT, nullptr, copies);
-  }
-}
-
 // Over geometry that has been drawn already, with its depth: only what is seen may pass.
 static void begin_over_drawn() {
   glDisable(GL_CULL_FACE);
@@ -250,7 +132,7 @@ void Caustics::draw_places(const Scene&, const DynamicObjects::Object& object, s
   places_[index].clear({0, 0, -1, 0});
   place_targets_[index].draw(maps.layers, [&](int face) {
     use_cube_program(place_program_, object.cube->camera(), face);
-    draw_receivers(&Receiver::place_array, maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
+    receivers_.draw_places(maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
   });
   end_over_drawn();
 }
@@ -262,7 +144,7 @@ void Caustics::add_light(const DynamicObjects::Object& object, const MapSettings
   light_maps_.bind(7);
   object.cube->target().draw(maps.layers, [&](int face) {
     use_cube_program(cube_light_program_, object.cube->camera(), face);
-    draw_receivers(&Receiver::array, maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
+    receivers_.draw_surfaces(maps.layers == CubeLayers::vertex ? gl::kCubeFaces : 1);
   });
   end_over_drawn();
 }
@@ -275,7 +157,7 @@ void Caustics::draw(const Scene&, const Camera& camera) {
   light_maps_.bind(7);
   light_program_.use();
   light_program_.set("world_to_clip", camera.projection() * camera.world_to_view());
-  draw_receivers(&Receiver::array, 1);
+  receivers_.draw_surfaces(1);
   end_over_drawn();
 }
 
@@ -331,7 +213,7 @@ void Caustics::trace(const Scene& scene, const ForwardPass& forward, const Dynam
                      const Light& light, const LookupSettings& lookup) {
   const DynamicObjects::Object& object = objects.objects()[index];
   const Instance& instance = scene.instances[static_cast<std::size_t>(object.instance)];
-  const SurfaceKind kind = scene.materials[static_cast<std::size_t>(instance.material)].kind;
+  const SurfaceKind kind = material_of(scene, instance).kind;
   PhotonCamera camera;
   if (!see(scene, light, object, camera)) return;
   const gl::Program& program = photon_program(objects, kind, lookup);
@@ -389,7 +271,7 @@ void Caustics::update(const Scene& scene, const ForwardPass& forward, const Dyna
                       const MapSettings& maps, const LookupSettings& lookup, const std::vector<std::size_t>& due) {
   if (!settings_.enabled || receivers_.empty()) return;
   const bool changed = !traced_ || revision_ != scene.revision();
-  if (changed) place_receivers(scene);
+  if (changed) receivers_.place(scene);
   for (const std::size_t i : due)
     draw_places(scene, objects.objects()[i], i, maps);
   if (changed || settings_.every_frame || !due.empty()) {
@@ -413,13 +295,6 @@ double Caustics::landed_w() const {
   for (std::size_t i = 3; i < texels.size(); i += 4)
     sum += static_cast<double>(texels[i]);
   return sum;
-}
-
-std::vector<int> Caustics::receivers() const {
-  std::vector<int> instances;
-  for (const Receiver& receiver : receivers_)
-    instances.push_back(receiver.instance);
-  return instances;
 }
 
 std::string Caustics::reload_shaders() {

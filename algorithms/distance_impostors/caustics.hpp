@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include "algorithms/distance_impostors/receivers.hpp"
 #include "algorithms/forward_pass.hpp"
 
 namespace pellucid::distance_impostors {
@@ -25,9 +26,8 @@ struct CausticSettings {
 /// object after another reflection inside it have a map of their own, so that no light is lost.
 class Caustics {
  public:
-  /// Finds the receivers: the opaque instances whose surface has a chart, at most kMaxReceivers.
+  /// Finds the receivers.
   void prepare(const Scene&, const CausticSettings&, const MapSettings&, const DynamicObjects&);
-  static constexpr int kMaxReceivers = 32;
 
   /// After the maps of `due` have been drawn: their maps of places, then photons and light maps, then the light in
   /// these maps.
@@ -40,40 +40,27 @@ class Caustics {
   double landed_w() const;
   const gl::Texture& light_maps() const { return light_maps_; }  ///< rgb: irradiance [W/m²]; a: power in the texel [W]
   /// Instances in the order of the light maps' layers.
-  std::vector<int> receivers() const;
+  std::vector<int> receivers() const { return receivers_.instances(); }
   const std::vector<std::string>& warnings() const { return warnings_; }
   std::string reload_shaders();
 
  private:
-  struct Receiver {
-    int instance = 0;
-    gl::Buffer vertices, indices, attributes;
-    gl::Buffer densities, unshaded;      // area that the unit square stands for, about each vertex
-    gl::VertexArray array, place_array;  // with the colours; with the densities in their stead
-    std::vector<glm::vec2> places;       // by vertex
-    glm::mat3 axes{0.0F};                // of the instance, that the densities are for
-    int index_count = 0;
-  };
   struct PhotonCamera {
     glm::mat4 world_to_clip{1.0F};
     glm::vec3 axis{0.0F};
     float texel = 0;  // side of a texel: on the plane at distance 1, or [m] of a directional light's
   };
-  void add_receiver(const Scene&, int instance, const struct LightMapChart&);
-  void place_receivers(const Scene&);
-  static void measure_density(const Scene&, Receiver&, const glm::mat3& axes);
   void draw_places(const Scene&, const DynamicObjects::Object&, std::size_t index, const MapSettings&);
   void add_light(const DynamicObjects::Object&, const MapSettings&);
   bool see(const Scene&, const Light&, const DynamicObjects::Object&, PhotonCamera&);
   void trace(const Scene&, const ForwardPass&, const DynamicObjects&, std::size_t index, const Light&,
              const LookupSettings&);
   void splat(int exits);
-  void draw_receivers(gl::VertexArray Receiver::*array, int copies) const;
   const gl::Program& photon_program(const DynamicObjects&, SurfaceKind, const LookupSettings&);
   void warn(std::string text);
 
   CausticSettings settings_;
-  std::vector<Receiver> receivers_;
+  Receivers receivers_;
   std::vector<gl::Texture> places_;  // one cube map for each object: u, v, receiver and part, area of the unit square
   std::vector<CubeTarget> place_targets_;
   gl::Texture photon_places_, photon_powers_, photon_depth_, light_maps_;
