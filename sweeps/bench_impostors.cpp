@@ -81,7 +81,7 @@ SurfaceOptions reference_options(const Scene& scene, const LookupSettings& looku
   for (const Instance& instance : scene.instances) {
     if (!optical(scene, instance)) continue;
     ++objects;
-    solid = solid || scene.materials[static_cast<std::size_t>(instance.material)].kind == SurfaceKind::dielectric;
+    solid = solid || material_of(scene, instance).kind == SurfaceKind::dielectric;
   }
   SurfaceOptions options;
   options.both_sides = lookup.bounces > 1;

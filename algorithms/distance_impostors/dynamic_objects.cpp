@@ -15,9 +15,6 @@ constexpr const char* kFolder = "algorithms/distance_impostors/";
 const Instance& instance_of(const Scene& scene, const DynamicObjects::Object& object) {
   return scene.instances[static_cast<std::size_t>(object.instance)];
 }
-const Material& material_of(const Scene& scene, const DynamicObjects::Object& object) {
-  return scene.materials[static_cast<std::size_t>(instance_of(scene, object).material)];
-}
 
 // Around the opaque objects: what the proxies stand for.
 Bounds opaque_bounds(const Scene& scene) {
@@ -55,7 +52,7 @@ void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bo
     const Bounds bounds = mesh_bounds(mesh);
     if (!extents_.contains(instance.mesh))
       extents_[instance.mesh] = {0.5F * (bounds.min + bounds.max), 0.5F * (bounds.max - bounds.min), closed(mesh)};
-    if (!refractors || material_of(scene, object).kind != SurfaceKind::dielectric) continue;
+    if (!refractors || material_of(scene, object.instance).kind != SurfaceKind::dielectric) continue;
     const auto [at, made] = refractors_.try_emplace(instance.mesh, mesh, settings.refractor_size, settings.layers);
     object.refractor = &at->second;
     if (made && !at->second.shape().exact()) warnings_.push_back(describe(mesh.name, at->second.shape()));
@@ -143,7 +140,8 @@ void DynamicObjects::draw_mutual(const Scene& scene, const ForwardPass& forward,
       cube.target().draw(settings.layers, [&](int face) {
         for (std::size_t j = 0; j < objects_.size(); ++j) {
           if (j == i) continue;
-          const gl::Program& shade = program(material_of(scene, objects_[j]).kind, Use::cube, settings, lookup);
+          const gl::Program& shade =
+              program(material_of(scene, objects_[j].instance).kind, Use::cube, settings, lookup);
           bind(scene, objects_[j], lookup, shade);
           cull(scene, objects_[j], cube.camera().center);
           draw_cube_object(forward, scene, objects_[j].instance, cube.camera(), face, shade);
@@ -189,7 +187,7 @@ void DynamicObjects::shade(const Scene& scene, const Camera& camera, const Targe
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const auto area = seen(scene, objects_[i], camera);
     if (!area) continue;
-    const gl::Program& shading = program(material_of(scene, objects_[i]).kind, Use::frame, settings, lookup);
+    const gl::Program& shading = program(material_of(scene, objects_[i].instance).kind, Use::frame, settings, lookup);
     bind(scene, objects_[i], lookup, shading);
     pixels_.bind(shading, camera, static_cast<int>(i) + 1);
     shading.use();
@@ -210,7 +208,7 @@ void DynamicObjects::draw_report(const Scene& scene, const ForwardPass& forward,
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LEQUAL);
-  const gl::Program& shade = program(material_of(scene, object).kind, Use::report, settings, lookup);
+  const gl::Program& shade = program(material_of(scene, object.instance).kind, Use::report, settings, lookup);
   bind(scene, object, lookup, shade);
   shade.set("eye", camera.view.eye);
   forward.draw_instance(scene, object.instance, camera.projection() * camera.world_to_view(), shade);
@@ -256,7 +254,7 @@ const gl::Program& DynamicObjects::program(SurfaceKind kind, Use use, const MapS
 
 void DynamicObjects::bind(const Scene& scene, const Object& object, const LookupSettings& lookup,
                           const gl::Program& program) const {
-  const Material& material = material_of(scene, object);
+  const Material& material = material_of(scene, object.instance);
   object.cube->bind();
   program.set("reference_point", object.reference);
   program.set("reflectance", material.reflectance);
