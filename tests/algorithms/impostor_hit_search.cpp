@@ -1,6 +1,5 @@
 // The hit search of distance impostors: against closed forms, and GLSL against C++.
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <random>
 
@@ -11,6 +10,7 @@
 #include "gl/context.hpp"
 #include "gl/cube_faces.hpp"
 #include "gl/program.hpp"
+#include "tests/algorithms/compute.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {
@@ -202,17 +202,7 @@ std::vector<glm::vec4> run_on_gpu(const std::vector<Ray>& rays, int room, const 
                              {"ITERATIONS", fmt::to_string(search.iterations)},
                              {"SCHEME", fmt::to_string(static_cast<int>(search.scheme))},
                              {"LINEAR_STEPS", fmt::to_string(search.steps)}});
-  const gl::Buffer in("rays", std::span<const Ray>(rays));
-  const gl::Buffer out("hits", rays.size() * sizeof(glm::vec4));
-  in.bind_storage(0);
-  out.bind_storage(1);
-  program.use();
-  glDispatchCompute(static_cast<GLuint>((rays.size() + 63) / 64), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  std::vector<glm::vec4> hits(rays.size());
-  const auto bytes = out.read();
-  std::memcpy(hits.data(), bytes.data(), bytes.size());
-  return hits;
+  return test::compute<glm::vec4>(program, rays);
 }
 
 TEST(ImpostorHitSearch, ShaderAgreesWithItsTwin) {
