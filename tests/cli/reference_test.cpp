@@ -6,49 +6,18 @@
 
 #include "algorithms/scene/image.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/glass_ball.hpp"
 
 namespace pellucid {
 namespace {
 
 using nlohmann::json;
+using test::kGlassBall;
 using test::pellucid;
-
-constexpr const char* kGlass = R"(title = "A ball of glass"
-ambient = 0.3
-[views.front]
-eye = [0, 1, 4]
-target = [0, 0.7, 0]
-[environment]
-zenith = [0.2, 0.4, 0.9]
-horizon = [0.9, 0.9, 0.8]
-[lights.sun]
-kind = "directional"
-direction = [0, -1, 0]
-intensity = 2
-shadow = true
-[meshes.ball]
-shape = "sphere"
-radius = 0.5
-[meshes.floor]
-shape = "plane"
-size = [6, 6]
-[materials.glass]
-kind = "dielectric"
-[materials.grey]
-[instances.ball]
-mesh = "ball"
-material = "glass"
-position = [0, 0.7, 0]
-[instances.floor]
-mesh = "floor"
-material = "grey"
-[parameters]
-eta = { default = 1.5, range = [1, 3], doc = "index", mode = "set", drives = ["materials.glass.ior"] }
-)";
 
 class GlassReference : public testing::Test {
  protected:
-  void SetUp() override { std::ofstream(folder / "glass.toml") << kGlass; }
+  void SetUp() override { std::ofstream(folder / "glass.toml") << kGlassBall; }
   test::Outcome trace(std::vector<std::string> more, const std::string& out = "out.exr") {
     std::vector<std::string> all{"reference", (folder / "glass.toml").string(), "--size", "48x36",
                                  "-o",        (folder / out).string()};
@@ -100,7 +69,7 @@ TEST_F(GlassReference, RefusesWhatCannotBe) {
   for (const std::vector<std::string>& bad :
        {std::vector<std::string>{"--samples", "0"}, {"--reflections", "-1"}, {"--cut", "2"}, {"--photons", "3"}})
     EXPECT_TRUE(refused(trace(bad), 2, {bad[0]}));
-  std::string fog = kGlass;
+  std::string fog = kGlassBall;
   fog += "[volume]\nkind = \"constant\"\nvoxels = 4\nmin = [-1, 0, -1]\nmax = [1, 1, 1]\nextinction = 1\n";
   std::ofstream(folder / "glass.toml") << fog;
   EXPECT_TRUE(refused(trace({}), 2, {"volume", "medium"}));
@@ -110,11 +79,11 @@ TEST_F(GlassReference, RefusesWhatCannotBe) {
   std::ofstream(folder / "glass.toml") << fog;
   EXPECT_TRUE(succeeded(trace({})));
   EXPECT_TRUE(refused(trace({"--samples", "4"}), 2, {"4 samples", "medium"}));
-  std::ofstream(folder / "glass.toml") << kGlass;
+  std::ofstream(folder / "glass.toml") << kGlassBall;
 }
 
 TEST_F(GlassReference, WarnsOfAnOpenSolid) {
-  std::string open = kGlass;
+  std::string open = kGlassBall;
   open.replace(open.find("shape = \"sphere\"\nradius = 0.5"), 29, "shape = \"plane\"\nsize = [3, 3]");
   open.replace(open.find("size = [6, 6]"), 13, "size = [0.1, 0.1]");
   std::ofstream(folder / "glass.toml") << open;

@@ -6,6 +6,7 @@
 
 #include "gl/context.hpp"
 #include "sweeps/measure.hpp"
+#include "tests/glass_ball.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps {
@@ -57,42 +58,9 @@ TEST(SettledReference, IsCheckedBeforeTheFirstFrame) {
   EXPECT_NE(plan("").points[0].id, plan("reference.samples=4\n").points[0].id);
 }
 
-constexpr const char* kBall = R"(title = "A ball of glass over a floor"
-ambient = 0.3
-[views.front]
-eye = [0, 1.5, 4]
-target = [0, 0.7, 0]
-[environment]
-zenith = [0.2, 0.4, 0.9]
-horizon = [0.9, 0.9, 0.8]
-ground = [0.2, 0.2, 0.2]
-[lights.sun]
-kind = "directional"
-direction = [0, -1, 0]
-intensity = 2
-shadow = true
-[meshes.ball]
-shape = "sphere"
-radius = 0.6
-[meshes.floor]
-shape = "plane"
-size = [6, 6]
-[materials.glass]
-kind = "dielectric"
-[materials.grey]
-albedo = 0.6
-[instances.ball]
-mesh = "ball"
-material = "glass"
-position = [0, 0.8, 0]
-[instances.floor]
-mesh = "floor"
-material = "grey"
-)";
-
 class RaysReference : public testing::Test {
  protected:
-  void SetUp() override { std::ofstream(folder / "ball.toml") << kBall; }
+  void SetUp() override { std::ofstream(folder / "ball.toml") << ::pellucid::test::kGlassBall; }
   json measure(const std::string& reference) {
     const std::string text =
         "name='s'\nmetrics=['rmse']\n[reference]\n" + reference +
