@@ -30,6 +30,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kEnlarged = 3;
+constexpr int kPreviewShrink = 2;  ///< along each side; close-ups are enlarged the more
 
 std::string shown(std::vector<std::string> words) {
   words.insert(words.begin(), "pellucid");
@@ -157,7 +158,8 @@ std::map<std::string, Value> scene_parameters(const PaperPictures& set, Scene sc
 /// One set of pictures in the making.
 class Drawing {
  public:
-  Drawing(const PaperPictures& set, const PictureOptions& options) : set_(set), options_(options) {
+  Drawing(const PaperPictures& set, const PictureOptions& options)
+      : set_(set), options_(options), shrink_(options.preview ? kPreviewShrink : 1) {
     const std::string_view name = options.preview && !set.preview_scene.empty() ? set.preview_scene : set.scene;
     const Scene scene = sweeps::load_again(std::string(name), scene_parameters(set, load_scene(std::string(name))));
     out_.name = set.name;
@@ -170,9 +172,9 @@ class Drawing {
     out_.scene_title = scene.title;
     out_.stand_in = scene.stand_in;
     out_.view = scene.find_view(set.view).name;
-    out_.width = set.width;
-    out_.height = set.height;
-    out_.enlarged = kEnlarged;
+    out_.width = set.width / shrink_;
+    out_.height = set.height / shrink_;
+    out_.enlarged = kEnlarged * shrink_;
     scene_hash_ = scene.content_hash();
   }
 
@@ -305,6 +307,7 @@ class Drawing {
         truth_.image, nullptr,
         {.metrics = sweeps::MetricSet(std::vector<std::string>{"flip", "rmse"}), .keep_map = true});
     double largest = 0;
+    const int width = set_.close_up_width / shrink_, height = set_.close_up_height / shrink_;
     for (std::size_t i = 0; i < files_.size(); ++i) {
       DrawnPicture& picture = out_.pictures[i];
       sweeps::ComparisonResult result = comparison.compare(files_[i].image);
@@ -312,9 +315,9 @@ class Drawing {
         picture.metrics[metric] = result.at(metric);
       largest = std::max(largest, result.at("flip_max"));
       if (set_.close_up_x >= 0) {
-        out_.close_up = {set_.close_up_x, set_.close_up_y, set_.close_up_width, set_.close_up_height};
+        out_.close_up = {set_.close_up_x / shrink_, set_.close_up_y / shrink_, width, height};
       } else if (picture.name == set_.close_up_of) {
-        out_.close_up = plots::brightest_window(result.flip_map, set_.close_up_width, set_.close_up_height);
+        out_.close_up = plots::brightest_window(result.flip_map, width, height);
         out_.close_up_of = picture.label.empty() ? picture.name : picture.label;
       }
       ImageFile map;
@@ -358,8 +361,8 @@ class Drawing {
     const auto write = [&](const Image& window, DrawnPicture& picture) {
       picture.close_png = picture.name + ".close.png";
       picture.stretched_png = picture.name + ".stretched.png";
-      write_png(path(picture.close_png), plots::enlarge(window, kEnlarged));
-      write_png(path(picture.stretched_png), plots::enlarge(plots::stretch(window, contrast), kEnlarged));
+      write_png(path(picture.close_png), plots::enlarge(window, out_.enlarged));
+      write_png(path(picture.stretched_png), plots::enlarge(plots::stretch(window, contrast), out_.enlarged));
     };
     write(truth, out_.reference);
     for (std::size_t i = 0; i < files_.size(); ++i)
@@ -368,6 +371,7 @@ class Drawing {
 
   const PaperPictures& set_;
   const PictureOptions& options_;
+  int shrink_;
   std::string scene_hash_;
   DrawnPictures out_;
   ImageFile truth_;

@@ -49,7 +49,7 @@ struct DrawnPictures {
 struct PictureOptions {
   std::filesystem::path folder;  ///< gets the files; made when missing
   std::optional<int> device;
-  bool preview = false;                         ///< of the set's preview_scene
+  bool preview = false;                         ///< of the set's preview_scene, at half its width and height
   std::string made_on;                          ///< keep only files of this device; empty: of any
   std::function<void(const std::string&)> say;  ///< what is being done, one line
 };
