@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raise it when what is computed or how it is written changes.
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr std::string_view kMagic = "pellucid geocube\n";
 
 template <class T>

@@ -1,14 +1,14 @@
 // The cube maps of a geocube: each face a layer of an array with a border of its neighbours' texels, so that bilinear
 // fetches join across the cube's edges. C++ twin: CubeMaps in search.hpp.
 layout(binding = 1) uniform sampler2DArray cube_bounds;  // d, cos A, cos B, R_C
-layout(binding = 2) uniform sampler2DArray cube_planes;  // N, inner distance
+layout(binding = 2) uniform sampler2DArray cube_planes;  // N; inner distance, or of a single layer whether more is behind
 uniform vec4 cube_spheres[16];                           // centre, and radius of sphere D
 uniform int cube_count;
 uniform int cube_layers;
 
 struct CubeSample {
   vec4 bounds;
-  vec3 normal;  // not unit
+  vec4 plane;  // N is not unit
 };
 
 // s, t in [-1, 1] and the face, as OpenGL numbers them.
@@ -35,7 +35,7 @@ CubeSample fetch_cube(int cube, vec3 direction) {
   ++both_fetched;
 #endif
   vec3 at = cube_coordinates(cube, direction);
-  return CubeSample(textureLod(cube_bounds, at, 0.0), textureLod(cube_planes, at, 0.0).xyz);
+  return CubeSample(textureLod(cube_bounds, at, 0.0), textureLod(cube_planes, at, 0.0));
 }
 vec4 fetch_bounds(int cube, vec3 direction) {
 #ifdef COUNT

@@ -31,6 +31,7 @@ struct Radial {
     std::vector<Crossing> outer, inner;
   };
   std::vector<Layer> layers;
+  std::vector<char> again;  // by texel: of a single layer, the inside begins again behind it
   std::size_t dropped = 0;
 };
 
@@ -82,11 +83,13 @@ void trace(const Solid& solid, const glm::dvec3& center, const glm::dvec3& direc
     const Crossing crossing{hit->distance, hit->triangle, solid.shading_normal(hit->triangle, hit->weights)};
     if (inside) {
       radial.layers[layer].outer[texel] = crossing;
-      if (layers == 1) return;
       ++layer;
     } else {
       if (layer == layers) {
-        dropped.fetch_add(1, std::memory_order_relaxed);
+        if (layers == 1)
+          radial.again[texel] = 1;
+        else
+          dropped.fetch_add(1, std::memory_order_relaxed);
         return;
       }
       radial.layers[layer].inner[texel] = crossing;
@@ -104,6 +107,7 @@ Radial trace_all(const Solid& solid, const glm::dvec3& center, const CubeGrid& g
     layer.outer.resize(grid.texels());
     layer.inner.resize(grid.texels());
   }
+  radial.again.resize(grid.texels());
   std::atomic<std::size_t> dropped{0};
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.texels(), 1024), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
@@ -187,11 +191,25 @@ class Cones {
     if (options_.use_c) c = radius_c(outer, v, hints.c);
     const glm::vec3 normal(outer.normal), inner_normal(inner.normal);
     layer.bounds[texel] = {outer.distance, std::clamp(a, 0.0, 1.0), std::clamp(b, 0.0, 1.0), c};
-    layer.planes[texel] = glm::vec4(normal, static_cast<float>(inner.distance));
+    const bool single = radial_.layers.size() == 1;
+    layer.planes[texel] = glm::vec4(normal, single ? again_about(texel) : static_cast<float>(inner.distance));
     if (k > 0) {
       const double r = options_.use_c ? radius_c(inner, v, hints.c) : 0;
       layer.inners[texel] = glm::vec4(inner_normal, static_cast<float>(r));
     }
+  }
+
+  // 1 where the inside begins again behind the layer, in this direction or a neighbour's, which catches what is
+  // narrower than a texel; else 0.
+  float again_about(std::size_t texel) const {
+    const CubeTexel at = grid_.texel(texel);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const CubeTexel near{at.face, at.x + dx, at.y + dy};
+        if (radial_.again[grid_.index(grid_.nearest(grid_.direction(near)))] != 0) return 1;
+      }
+    }
+    return 0;
   }
 
   // The narrower of the two cones from the ends of the interval to its middle.

@@ -32,7 +32,9 @@ struct CubeOptions {
 /// direction v the inside runs from `inner` to `distance`; both are 0 where the direction has no such layer.
 struct CubeLayer {
   std::vector<glm::vec4> bounds;  ///< distance d, cos θ_A, cos θ_B, R_C; a cone that is left out is a line: cosine 1
-  std::vector<glm::vec4> planes;  ///< outward unit normal N at S = O + d·v; inner distance
+  /// Outward unit normal N at S = O + d·v; inner distance. Of a single layer there is none: 1 where the inside begins
+  /// again behind S, in this direction or a neighbour's, else 0.
+  std::vector<glm::vec4> planes;
   std::vector<glm::vec4> inners;  ///< outward unit normal at the inner distance and R_C there; empty for layer 0
 };
 

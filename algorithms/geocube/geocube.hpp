@@ -10,6 +10,7 @@ namespace pellucid::geocube {
 
 enum class Cones { none, a, b, c, ab, ac, bc, abc };
 enum class Placing { automatic, middle, hand };
+enum class Ask { behind, always };
 enum class Functions { evaluated, table };
 enum class SearchStage { fragment, split };
 enum class Show { radiance, steps, length, bounded, cube, internal_reflection };
@@ -27,6 +28,7 @@ struct Parameters {
   int iterations = 10;
   float min_step = 0.002F;
   int switches = 1;
+  Ask ask = Ask::behind;
   int refine = 2;
   int reflections = 1;
   float cut = 1e-4F;
@@ -88,6 +90,10 @@ struct Parameters {
                             .cite = "Sec. 2.3",
                             .doc = "other cubes asked, by the plane rule, before a point counts as outside; 1 in the "
                                    "paper"});
+    visit(PARAM(ask), {.cite = "beyond the paper",
+                       .doc = "when others are asked: where the directions about the point meet the solid again behind "
+                              "the surface, or always, as in the paper",
+                       .choices = "behind|always"});
     visit(PARAM(refine), {.range = {0, 8},
                           .cite = "beyond the paper",
                           .doc = "tangent-plane steps from the point found back to the surface; 0: the surface point "

@@ -156,6 +156,7 @@ void GlassPass::set_search(const GlassObject& object, const Material& material, 
   program.set("vertex_iterations", parameters_.vertex_iterations);
   program.set("refine", parameters_.refine);
   program.set("switches", parameters_.switches);
+  program.set("ask_always", parameters_.ask == Ask::always);
   program.set("object_number", object.instance() + 1);
 }
 

@@ -57,7 +57,7 @@ Field field_at(int cube, vec3 v, float l) {
 float allowed_layer_step(Field field, vec3 v, float l, vec3 h) {
   ivec3 at = layer_texel(field.nearest, field.place.layer);
   vec4 bounds = texelFetch(cube_bounds, at, 0), plane = texelFetch(cube_planes, at, 0);
-  if (field.place.layer == 0) return allowed_step(CubeSample(bounds, plane.xyz), v, l, h);
+  if (field.place.layer == 0) return allowed_step(CubeSample(bounds, plane), v, l, h);
   vec3 inner_n = texelFetch(cube_inners, at, 0).xyz;
   float d = bounds.x, from = plane.w, hv = dot(h, v);
   float halved = max(0.5 * (d - from), 1e-20), middle = 0.5 * (d + from);

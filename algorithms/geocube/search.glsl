@@ -8,6 +8,7 @@
 uniform int iterations;
 uniform int refine;
 uniform int switches;
+uniform bool ask_always;
 uniform float min_step;
 uniform float cosine_c;
 
@@ -24,7 +25,7 @@ struct Exit {
 float allowed_step(CubeSample s, vec3 v, float l, vec3 h) {
   float d = s.bounds.x, hv = dot(h, v);
   float a = d * cone_step(l / d, -hv, -hv, 1.0, s.bounds.y);
-  float b = d * cone_step((d - l) / d, hv, dot(h, s.normal), dot(v, s.normal), s.bounds.z);
+  float b = d * cone_step((d - l) / d, hv, dot(h, s.plane.xyz), dot(v, s.plane.xyz), s.bounds.z);
   float allowed = max(a < kFar ? a : 0.0, b < kFar ? b : 0.0);
   return min(allowed, 2.0 * d);
 }
@@ -54,54 +55,61 @@ float first_step(vec3 p, vec3 normal, vec3 h, int cube) {
   return max(min_step, fetch_bounds(cube, p - cube_spheres[cube].xyz).w);
 }
 
-// The march from p + t h; `inside` becomes the last place known to be inside, `found` tells whether t lies beyond the exit.
-// Two loops, since wide vectors execute both sides of a branch but do leave a loop.
+// The march from p + t h; `inside` becomes the last place known to be inside, `found` tells whether t lies beyond the exit,
+// v and s are of the last place outside of a cube. One loop, in which asking another cube is a turn like any other: wide
+// vectors execute both sides of a branch, and fetches on either cost alike.
 void march(vec3 p, vec3 h, int most, inout int cube, inout float t, inout float inside, inout int steps, out bool found,
            out vec3 v, out CubeSample s) {
   found = false;
   v = vec3(0.0);
-  s = CubeSample(vec4(0.0), vec3(0.0));
-  float l = 0.0;
-  while (!found && steps < most) {
-    bool outside = false;
-    while (!outside && steps < most) {
-      ++steps;
-      vec4 sphere = cube_spheres[cube];
-      vec3 w = p + t * h - sphere.xyz;
-      l = max(length(w), 1e-20);
-      v = w / l;
-      s = fetch_cube(cube, v);
-      bool in_sphere = l < sphere.w;
-      outside = !in_sphere && l >= s.bounds.x;
-      float allowed = in_sphere ? sphere.w * sphere_step(l / sphere.w, dot(h, v)) : allowed_step(s, v, l, h);
-      if (!outside) {
+  s = CubeSample(vec4(0.0), vec4(0.0));
+  int home = cube, asks = 0;  // who had the point outside, and how many others were asked since
+  float l_home = 0.0;
+  uint asked = 0u;
+  while (!found && (steps < most || asks > 0)) {
+    vec4 sphere = cube_spheres[cube];
+    vec3 w = p + t * h - sphere.xyz;
+    float l = max(length(w), 1e-20);
+    vec3 u = w / l;
+    CubeSample here = fetch_cube(cube, u);
+    bool in_sphere = l < sphere.w;
+    float allowed = in_sphere ? sphere.w * sphere_step(l / sphere.w, dot(h, u)) : allowed_step(here, u, l, h);
+    if (in_sphere || l < here.bounds.x) {
+      if (steps < most) {
         inside = t;
         t += max(allowed, min_step);
+        ++steps;
       }
+      home = cube;
+      asks = 0;
+      continue;
     }
-    bool seen = false;
-#if CUBES > 1
-    uint asked = 1u << uint(cube);
-    int home = cube;
-    for (int k = 0; outside && k < switches && !seen; ++k) {
-      int other = next_cube(v, l, home, asked);
-      if (other < 0) break;
-      asked |= 1u << uint(other);
-      vec3 from_other = p + t * h - cube_spheres[other].xyz;
-      seen = length(from_other) < fetch_bounds(other, from_other).x;
-      if (seen) cube = other;
+    if (asks == 0) {
+      ++steps;
+      v = u;
+      s = here;
+      l_home = l;
+      asked = 0u;
     }
-#endif
-    found = outside && !seen && dot(h, s.normal) > 0.0;
-    if (outside && !seen && !found) t += min_step;
+    asked |= 1u << uint(cube);
+    bool ask = asks < switches && (ask_always || s.plane.w > 0.0);
+    int other = ask ? next_cube(v, l_home, home, asked) : -1;
+    ++asks;
+    cube = other;
+    if (other >= 0) continue;
+    // Nobody sees it: through the surface, or, of a ray that heads inwards, only beneath the sampled one.
+    cube = home;
+    asks = 0;
+    found = dot(h, s.plane.xyz) > 0.0;
+    if (!found) t += min_step;
   }
 }
 
 // From the plane at S back to the surface, or half-way where that leads out of the known interval.
 float corrected(vec3 p, vec3 h, int cube, vec3 v, CubeSample s, float t, float inside, float outside) {
-  float slope = dot(h, s.normal);
+  float slope = dot(h, s.plane.xyz);
   vec3 to_s = cube_spheres[cube].xyz + s.bounds.x * v - (p + t * h);
-  float next = slope > 1e-6 ? t + dot(to_s, s.normal) / slope : kFar;
+  float next = slope > 1e-6 ? t + dot(to_s, s.plane.xyz) / slope : kFar;
   float rounding = 0.01 * min_step;
   bool near = next >= inside - rounding && next <= outside + rounding;
   return near ? clamp(next, inside, outside) : 0.5 * (inside + min(outside, t));
@@ -134,7 +142,7 @@ Exit find_exit(vec3 p, vec3 h, int cube, float start) {
   result.point = found && refine > 0 ? p + t * h : cube_spheres[cube].xyz + s.bounds.x * v;
   result.path = t;
   result.cube = cube;
-  result.normal = normalize(s.normal);
+  result.normal = normalize(s.plane.xyz);
   result.clear = s.bounds.w;
   return result;
 }

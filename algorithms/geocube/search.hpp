@@ -45,7 +45,7 @@ inline float sphere_step(float f, float gamma) {
 /// What a cube map tells for a direction.
 struct CubeSample {
   glm::vec4 bounds{0.0F};  ///< d, cos θ_A, cos θ_B, R_C
-  glm::vec4 plane{0.0F};   ///< N, not of unit length between texels
+  glm::vec4 plane{0.0F};   ///< N, not of unit length between texels; above 0 where the inside begins again behind S
 };
 
 /// The cube maps as a shader samples them.
@@ -79,6 +79,7 @@ struct SearchOptions {
   int refine = 2;       ///< tangent-plane steps from the point found back to the surface; 0 as in the paper
   int switches =
       1;  ///< other cubes asked before a point counts as outside, in the plane rule's order; 1 as in the paper
+  bool ask_always = false;  ///< not only where the cube's maps tell that the inside begins again behind the surface
   float cosine_c = 0.745F;  ///< of cone C's half-angle
 };
 
@@ -134,36 +135,44 @@ Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, co
   glm::vec3 v(0.0F);
   CubeSample s;
   bool found = false;
-  while (!found && exit.steps < options.iterations) {
-    float l = 0;
-    bool beyond = false;
-    while (!beyond && exit.steps < options.iterations) {
+  int home = cube, asks = 0;  // who had the point outside, and how many others were asked since
+  float l_home = 0;
+  std::uint32_t asked = 0;
+  while (!found && (exit.steps < options.iterations || asks > 0)) {
+    const glm::vec3 w = p + t * h - maps.center(cube);
+    const float l = std::max(glm::length(w), 1e-20F), sphere = maps.sphere(cube);
+    const glm::vec3 u = w / l;
+    const CubeSample here = maps.fetch(cube, u);
+    if (l < sphere || l < here.bounds.x) {
+      if (exit.steps < options.iterations) {
+        const float allowed =
+            l < sphere ? sphere * sphere_step(l / sphere, glm::dot(h, u)) : allowed_step(here, u, l, h);
+        inside = t;
+        t += std::max(allowed, options.min_step);
+        ++exit.steps;
+      }
+      home = cube;
+      asks = 0;
+      continue;
+    }
+    if (asks == 0) {
       ++exit.steps;
-      const glm::vec3 w = p + t * h - maps.center(cube);
-      l = std::max(glm::length(w), 1e-20F);
-      v = w / l;
-      s = maps.fetch(cube, v);
-      const float sphere = maps.sphere(cube);
-      beyond = l >= sphere && l >= s.bounds.x;
-      if (beyond) break;
-      inside = t;
-      const float allowed = l < sphere ? sphere * sphere_step(l / sphere, glm::dot(h, v)) : allowed_step(s, v, l, h);
-      t += std::max(allowed, options.min_step);
+      v = u;
+      s = here;
+      l_home = l;
+      asked = 0;
     }
-    if (!beyond) break;
-    // Outside for this cube: through the surface, or out of its sight.
-    std::uint32_t asked = 1U << static_cast<unsigned>(cube);
-    const int home = cube;
-    bool seen = false;
-    for (int k = 0; k < options.switches && !seen; ++k) {
-      const int other = next_cube(maps, v, l, home, asked);
-      if (other < 0) break;
-      asked |= 1U << static_cast<unsigned>(other);
-      const glm::vec3 from_other = p + t * h - maps.center(other);
-      seen = glm::length(from_other) < maps.fetch(other, from_other).bounds.x;
-      if (seen) cube = other;
+    // Outside for this cube: out of its sight, if the inside begins again behind the surface, or through it.
+    asked |= 1U << static_cast<unsigned>(cube);
+    const bool ask = asks < options.switches && (options.ask_always || s.plane.w > 0.0F);
+    const int other = ask ? next_cube(maps, v, l_home, home, asked) : -1;
+    ++asks;
+    if (other >= 0) {
+      cube = other;
+      continue;
     }
-    if (seen) continue;
+    cube = home;
+    asks = 0;
     // A ray that heads inwards is only beneath the sampled surface, not through it.
     found = glm::dot(h, glm::vec3(s.plane)) > 0.0F;
     if (found)

@@ -224,6 +224,67 @@ TEST(GeocubeRealMeshes, AutomaticPlacementSeesTheBunny) {
   EXPECT_LE(five.unseen.back(), 0.001);
 }
 
+TEST(GeocubeCubes, TellWhereTheInsideBeginsAgain) {
+  const Solid solid(make_torus(1.0F, 0.3F, 48));
+  const CubeSet set = build_cubes(solid, std::vector{glm::dvec3(1, 0, 0)}, {.resolution = 32});
+  const CubeGrid grid = set.grid();
+  const CubeLayer& layer = set.cubes[0].layers[0];
+  std::size_t marked = 0, again = 0;
+  for (std::size_t i = 0; i < grid.texels(); ++i) {
+    const float told = layer.planes[i].w;
+    ASSERT_TRUE(told == 0 || told == 1);
+    marked += told > 0;
+    // Beyond the first surface, a millionth of the diagonal farther.
+    const auto next =
+        solid.first_hit({1, 0, 0}, grid.direction(i), static_cast<double>(layer.bounds[i].x) + 1e-5 * solid.diagonal());
+    if (!next) continue;
+    ++again;
+    EXPECT_EQ(told, 1) << i;
+  }
+  EXPECT_GT(again, grid.texels() / 50);
+  // The border of one texel about what is hidden, and no more.
+  EXPECT_GT(marked, again);
+  EXPECT_LT(marked, 2 * again);
+
+  const CubeSet ball =
+      build_cubes(Solid(make_sphere(1.0F, 48)), std::vector{glm::dvec3(0.3, 0, 0)}, {.resolution = 16});
+  for (const glm::vec4& plane : ball.cubes[0].layers[0].planes)
+    EXPECT_EQ(plane.w, 0);
+}
+
+// A ray that the surface hides from a cube's centre does not end there, and one that nothing hides asks nobody.
+TEST(GeocubeCubes, AreAskedWhereTheInsideBeginsAgain) {
+  const Solid solid(make_torus(1.0F, 0.3F, 48));
+  const Placement place = place_cubes(solid, {.cubes = 4, .candidates = 150, .samples = 500});
+  const CubeSet set = build_cubes(solid, place.centers, {});
+  const CubeMaps maps(set);
+  const auto mean_error = [&](bool always, int switches) {
+    SearchOptions search;
+    search.min_step = static_cast<float>(2e-3 * set.diagonal);
+    search.iterations = 40;
+    search.ask_always = always;
+    search.switches = switches;
+    Random random(9);
+    double sum = 0;
+    constexpr int kRays = 3000;
+    for (int i = 0; i < kRays; ++i) {
+      const auto t = static_cast<std::uint32_t>(random.below(static_cast<int>(solid.triangle_count())));
+      const glm::dvec3 p = solid.centroid(t), n = solid.shading_normal(t, glm::dvec3(1.0 / 3));
+      const glm::dvec3 way = test::random_direction(random);
+      const glm::dvec3 h = glm::normalize(glm::refract(glm::dot(way, n) < 0 ? way : -way, n, 1 / 1.5));
+      const auto truth = solid.first_hit(p, h, 1e-4 * solid.diagonal());
+      if (!truth || !truth->leaves) continue;
+      const Exit found =
+          find_exit(maps, glm::vec3(p), glm::vec3(n), glm::vec3(h), set.first_cube[*solid.source(t)], search);
+      sum += glm::distance(glm::dvec3(found.point), p + truth->distance * h) / set.diagonal / kRays;
+    }
+    return sum;
+  };
+  const double behind = mean_error(false, 2), always = mean_error(true, 2), never = mean_error(false, 0);
+  EXPECT_LT(behind, 1.05 * always);
+  EXPECT_LT(behind, 0.5 * never);
+}
+
 TEST(GeocubeRealMeshes, TheHeadsExitsAreFoundWithinTheBound) {
   Mesh mesh;
   try {

@@ -72,6 +72,7 @@ std::vector<Output> run_on_gpu(const Case& c, const SearchOptions& search, const
   program.set("iterations", search.iterations);
   program.set("refine", search.refine);
   program.set("switches", search.switches);
+  program.set("ask_always", search.ask_always);
   program.set("min_step", search.min_step);
   program.set("cosine_c", search.cosine_c);
   return test::compute<Output>(program, c.inputs);
@@ -112,6 +113,24 @@ TEST(GeocubeTwins, TheSearchAndItsFetches) {
     return find_exit(maps, p, n, h, cube, search);
   });
   EXPECT_GT(alike, 0.98);
+}
+
+// The programs of one and of two cubes leave out what choosing among many takes; and others may be asked always.
+TEST(GeocubeTwins, TheSearchAmongFewCubes) {
+  for (const int cubes : {1, 2}) {
+    const Case c({.resolution = 24}, cubes);
+    ASSERT_EQ(c.set.cubes.size(), static_cast<std::size_t>(cubes));
+    SearchOptions search = options_for(c.set);
+    const CubeMaps maps(c.set);
+    for (const bool always : {false, true}) {
+      search.ask_always = always;
+      const double alike = agreement(c, run_on_gpu(c, search, {{"CUBES", std::to_string(cubes)}}),
+                                     [&](const glm::vec3& p, const glm::vec3& n, const glm::vec3& h, int cube) {
+                                       return find_exit(maps, p, n, h, cube, search);
+                                     });
+      EXPECT_GT(alike, 0.98) << cubes << " cubes, " << (always ? "asked always" : "asked where more is behind");
+    }
+  }
 }
 
 TEST(GeocubeTwins, TheSearchWithATableOfItsFunctions) {
