@@ -27,7 +27,7 @@ void main() {
   vec4 sum = vec4(0.0);
   for (float k = 0.0; k < count.x; k += 1.0) {
     CubeSample s = fetch_cube(cube, from);
-    sum += s.bounds + vec4(s.normal, 0.0);
+    sum += s.bounds + s.plane;
     from += by;
   }
   for (float k = 0.0; k < count.y; k += 1.0) {
