@@ -45,13 +45,15 @@ class BareHulls {
  public:
   BareHulls(const Scene& scene, const Camera& camera, const ShadowSettings& shadow, const HullCounts& counts,
             gl::Format color_format, gl::Format map_format)
-      : scene_(scene), camera_(camera), shadow_(shadow), forward_(scene), medium_(scene, "bench") {
-    color_ = gl::Texture::make_2d("bench colour", color_format, camera.width, camera.height);
-    depth_ = gl::Texture::make_2d("bench depth", gl::Format::depth32f, camera.width, camera.height);
+      : scene_(scene),
+        camera_(camera),
+        shadow_(shadow),
+        forward_(scene),
+        medium_(scene, "bench"),
+        target_(camera, color_format) {
     map_ = gl::Texture::make_2d("bench map", map_format, camera.width, camera.height);
     map_.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
-    framebuffer_ = gl::Framebuffer("bench", {&color_}, &depth_);
-    map_framebuffer_ = gl::Framebuffer("bench map", {&map_}, &depth_);
+    map_framebuffer_ = gl::Framebuffer("bench map", {&map_}, &target_.depth);
     cut(counts);
     compile(counts);
   }
@@ -64,7 +66,7 @@ class BareHulls {
     map_framebuffer_.bind();
     coordinates_.set("world_to_local", glm::inverse(scene_.volume->to_world));
     forward_.draw_geometry(camera_, coordinates_);
-    framebuffer_.bind();
+    target_.framebuffer.bind();
     forward_.draw_shaded(camera_, true);
     if (with_hulls) draw_hulls();
     timer.end_frame();
@@ -149,7 +151,7 @@ class BareHulls {
   void draw_front(int hull) const {
     glCullFace(GL_BACK);
     glEnable(GL_BLEND);
-    framebuffer_.bind();
+    target_.framebuffer.bind();
     front_.use();
     geometry_.draw(hull);
   }
@@ -175,8 +177,9 @@ class BareHulls {
   Medium medium_;
   BoxGeometry geometry_;
   glm::vec3 step_local_{0.0F};
-  gl::Texture color_, depth_, map_;
-  gl::Framebuffer framebuffer_, map_framebuffer_;
+  BenchTarget target_;
+  gl::Texture map_;
+  gl::Framebuffer map_framebuffer_;
   gl::Program coordinates_, back_, front_;
   int fetches_per_blend_ = 0;
 };

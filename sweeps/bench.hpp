@@ -9,12 +9,12 @@
 
 #include "sweeps/stopping.hpp"
 
-/// What a technique's frame costs beside the least that its texture fetches and blends could cost: a bare shader over
-/// the same pixels, timed on the same device in the same run.
 namespace pellucid::gl {
 class Context;
 }
 
+/// What a technique's frame costs beside the least that its texture fetches and blends could cost: a bare shader over
+/// the same pixels, timed on the same device in the same run.
 namespace pellucid::sweeps {
 
 struct BenchRequest {

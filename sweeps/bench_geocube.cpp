@@ -19,10 +19,7 @@ constexpr const char* kName = "geocube";
 class GlassFrame {
  public:
   GlassFrame(const Scene& scene, const Camera& camera, const Parameters& parameters, gl::Format format)
-      : scene_(scene), camera_(camera), forward_(scene), pass_(parameters) {
-    color_ = gl::Texture::make_2d("bench colour", format, camera.width, camera.height);
-    depth_ = gl::Texture::make_2d("bench depth", gl::Format::depth32f, camera.width, camera.height);
-    framebuffer_ = gl::Framebuffer("bench", {&color_}, &depth_);
+      : scene_(scene), camera_(camera), forward_(scene), pass_(parameters), target_(camera, format) {
     forward_.update_shadows(scene, shadow_);
     pass_.prepare(scene);
   }
@@ -31,9 +28,9 @@ class GlassFrame {
   void render(gl::PassTimer& timer, Shader shader) {
     timer.begin_frame();
     if (forward_.shadowed()) forward_.update_shadows(scene_, shadow_);
-    pass_.draw_entries(scene_, camera_, forward_, target_, timer);
-    if (shader == Shader::search) pass_.draw_glass(scene_, camera_, target_);
-    if (shader == Shader::bare) pass_.draw_bare(scene_, camera_, target_);
+    pass_.draw_entries(scene_, camera_, forward_, target_.target(), timer);
+    if (shader == Shader::search) pass_.draw_glass(scene_, camera_, target_.target());
+    if (shader == Shader::bare) pass_.draw_bare(scene_, camera_, target_.target());
     timer.end_frame();
     gl::check("bench", kName);
   }
@@ -50,9 +47,7 @@ class GlassFrame {
   ShadowSettings shadow_;
   ForwardPass forward_;
   GlassPass pass_;
-  gl::Texture color_, depth_;
-  gl::Framebuffer framebuffer_;
-  Target target_{color_, depth_, framebuffer_};
+  BenchTarget target_;
 };
 
 }  // namespace

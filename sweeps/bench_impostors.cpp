@@ -23,11 +23,8 @@ class ImpostorFrame {
  public:
   ImpostorFrame(const Scene& scene, const Camera& camera, const MapSettings& maps, LookupSettings lookup, bool bare,
                 gl::Format format)
-      : scene_(scene), camera_(camera), maps_(maps), lookup_(lookup), forward_(scene) {
+      : scene_(scene), camera_(camera), maps_(maps), lookup_(lookup), forward_(scene), target_(camera, format) {
     lookup_.bare = bare;
-    color_ = gl::Texture::make_2d("bench colour", format, camera.width, camera.height);
-    depth_ = gl::Texture::make_2d("bench depth", gl::Format::depth32f, camera.width, camera.height);
-    framebuffer_ = gl::Framebuffer("bench", {&color_}, &depth_);
     forward_.update_shadows(scene, shadow_);
     objects_.prepare(scene, maps_, lookup_.bounces > 1, kName);
     const std::vector<std::size_t> due = objects_.due(scene, maps_);
@@ -38,9 +35,9 @@ class ImpostorFrame {
   void render(gl::PassTimer& timer, bool with_objects) {
     timer.begin_frame();
     if (forward_.shadowed()) forward_.update_shadows(scene_, shadow_);
-    framebuffer_.bind();
+    target_.framebuffer.bind();
     forward_.draw_shaded(camera_, false);
-    if (with_objects) objects_.draw(scene_, forward_, camera_, target_, maps_, lookup_);
+    if (with_objects) objects_.draw(scene_, forward_, camera_, target_.target(), maps_, lookup_);
     timer.end_frame();
     gl::check("bench", kName);
   }
@@ -48,11 +45,11 @@ class ImpostorFrame {
   double count_pixels() {
     gl::PassTimer untimed;
     render(untimed, false);
-    objects_.draw_surfaces(scene_, forward_, camera_, target_);
+    objects_.draw_surfaces(scene_, forward_, camera_, target_.target());
     GLuint query = 0;
     glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
     glBeginQuery(GL_SAMPLES_PASSED, query);
-    objects_.shade(scene_, camera_, target_, maps_, lookup_);
+    objects_.shade(scene_, camera_, target_.target(), maps_, lookup_);
     glEndQuery(GL_SAMPLES_PASSED);
     GLuint64 passed = 0;
     glGetQueryObjectui64v(query, GL_QUERY_RESULT, &passed);
@@ -68,9 +65,7 @@ class ImpostorFrame {
   ShadowSettings shadow_;
   ForwardPass forward_;
   DynamicObjects objects_;
-  gl::Texture color_, depth_;
-  gl::Framebuffer framebuffer_;
-  Target target_{color_, depth_, framebuffer_};
+  BenchTarget target_;
 };
 
 // As far as the frame follows light: into an object, `internal` times on inside, out, and on by the pictures of the

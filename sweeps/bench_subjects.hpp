@@ -11,6 +11,18 @@
 
 namespace pellucid::sweeps {
 
+/// What a bench's frames are drawn into, of the camera's size.
+struct BenchTarget {
+  BenchTarget(const Camera& camera, gl::Format format)
+      : color(gl::Texture::make_2d("bench colour", format, camera.width, camera.height)),
+        depth(gl::Texture::make_2d("bench depth", gl::Format::depth32f, camera.width, camera.height)),
+        framebuffer("bench", {&color}, &depth) {}
+
+  gl::Texture color, depth;
+  gl::Framebuffer framebuffer;
+  Target target() const { return {color, depth, framebuffer}; }
+};
+
 /// Draws the subjects in turn in blocks of BenchResult::kBlockFrames, at least `frames` of each, and between one
 /// subject and the next once a block has `reference`, if any, trace a picture. Returns the subjects' times [ms].
 std::vector<std::vector<double>> time_in_turn(std::span<const FrameClock::Draw> subjects, int frames, FrameClock& clock,

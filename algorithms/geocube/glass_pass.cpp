@@ -127,7 +127,7 @@ void GlassPass::compile(const gl::Defines& environment) {
   if (glass_ && defines == defines_) return;
   const std::string folder = "algorithms/geocube/";
   entry_ = gl::Program("geocube entries", {folder + "object.vert.glsl", folder + "entry.frag.glsl"}, defines);
-  glass_ = gl::Program("geocube", {kFullscreen, folder + "glass.frag.glsl"}, defines);
+  glass_ = gl::Program("geocube", {kFullscreen, kGlass}, defines);
   reflect_ = gl::Program("geocube mirrors", {folder + "object.vert.glsl", folder + "reflect.frag.glsl"}, environment);
   defines_ = std::move(defines);
 }
