@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/forward_pass.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid {
@@ -142,8 +142,8 @@ struct RenderSession::State {
 
   void average_samples() {
     if (!mean) {
-      mean = gl::Program("mean of samples", {"algorithms/shaders/common/fullscreen.vert.glsl",
-                                             "algorithms/shaders/common/mean_of_samples.frag.glsl"});
+      mean = gl::Program("mean of samples",
+                         {"algorithms/shaders/fullscreen.vert.glsl", "algorithms/shaders/mean_of_samples.frag.glsl"});
     }
     pixel_framebuffer.bind();
     glDisable(GL_BLEND);

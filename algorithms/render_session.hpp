@@ -8,7 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "algorithms/reference/reference.hpp"
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/timer.hpp"

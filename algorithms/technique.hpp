@@ -10,7 +10,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "algorithms/parameters.hpp"
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"
 #include "gl/timer.hpp"

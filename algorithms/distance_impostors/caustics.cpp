@@ -14,7 +14,7 @@
 namespace pellucid::distance_impostors {
 namespace {
 
-constexpr const char* kVertexStage = "algorithms/shaders/common/opaque.vert.glsl";
+constexpr const char* kVertexStage = "algorithms/shaders/opaque.vert.glsl";
 // From nearer than this to the bounding sphere's surface no one frustum sees the object.
 constexpr float kWidestHalfAngleDeg = 80;
 

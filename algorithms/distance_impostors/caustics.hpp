@@ -7,7 +7,7 @@
 
 #include "algorithms/distance_impostors/dynamic_objects.hpp"
 #include "algorithms/distance_impostors/receivers.hpp"
-#include "algorithms/forward_pass.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 
 namespace pellucid::distance_impostors {
 

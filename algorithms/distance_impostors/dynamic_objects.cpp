@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/scene/bounds.hpp"
+#include "algorithms/scene/shapes/bounds.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {
@@ -241,7 +241,7 @@ const gl::Program& DynamicObjects::program(SurfaceKind kind, Use use, const MapS
   Compiled& compiled = programs_[{kind, use}];
   if (compiled.program && compiled.defines == wanted) return compiled.program;
   const std::string fragment = std::string(kFolder) + (use == Use::report ? "report.frag.glsl" : "surface.frag.glsl");
-  const std::string shared = "algorithms/shaders/common/";
+  const std::string shared = "algorithms/shaders/";
   if (use == Use::cube)
     compiled.program = make_cube_program("optical object in a cube", fragment, settings.layers, wanted);
   else

@@ -11,7 +11,7 @@
 #include "algorithms/distance_impostors/impostor_cube.hpp"
 #include "algorithms/distance_impostors/object_pixels.hpp"
 #include "algorithms/distance_impostors/refractor_map.hpp"
-#include "algorithms/forward_pass.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/timer.hpp"
 

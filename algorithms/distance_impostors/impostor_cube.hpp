@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "algorithms/cube_pass.hpp"
 #include "algorithms/distance_impostors/settings.hpp"
+#include "algorithms/raster/cube_pass.hpp"
 
 namespace pellucid::distance_impostors {
 

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algorithms/native_map.hpp"
+#include "algorithms/raster/native_map.hpp"
 #include "algorithms/reference/photons.hpp"
 
 namespace pellucid::distance_impostors {
@@ -135,8 +135,8 @@ HitErrors::HitErrors(DynamicObjects& objects, const Scene& scene, const ForwardP
   const gl::Texture depth = gl::Texture::make_2d("ray depth", gl::Format::depth32f, camera.width, camera.height);
   const gl::Framebuffer framebuffer("rays", {&origin, &direction, &hit}, &depth);
   // What stands before the objects, without a colour.
-  const gl::Program covers(
-      "rays' depth", {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/distance_impostors/depth.frag.glsl"});
+  const gl::Program covers("rays' depth",
+                           {"algorithms/shaders/opaque.vert.glsl", "algorithms/distance_impostors/depth.frag.glsl"});
   const InterfaceTracer tracer(scene);
   for (const DynamicObjects::Object& object : objects.objects()) {
     framebuffer.bind();

@@ -28,7 +28,7 @@ void ObjectPixels::clear(const PixelArea& area) const {
 
 const gl::Program& ObjectPixels::surfaces(const Camera& camera, int number) {
   if (!surfaces_) {
-    surfaces_ = gl::Program("object pixels", {"algorithms/shaders/common/opaque.vert.glsl",
+    surfaces_ = gl::Program("object pixels", {"algorithms/shaders/opaque.vert.glsl",
                                               "algorithms/distance_impostors/object_pixels.frag.glsl"});
   }
   surfaces_.set("eye", camera.view.eye);

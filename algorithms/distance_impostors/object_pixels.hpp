@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/pixel_area.hpp"
+#include "algorithms/raster/pixel_area.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"

@@ -2,7 +2,7 @@
 // reflected on the outside, i what leaves after i reflections inside.
 #include "algorithms/distance_impostors/lookup.glsl"
 #include "algorithms/distance_impostors/surface_point.glsl"
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/optics.glsl"
 #if KIND == 3
 #include "algorithms/distance_impostors/refraction.glsl"
 #endif

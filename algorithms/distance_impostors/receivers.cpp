@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "algorithms/distance_impostors/light_map_chart.hpp"
-#include "algorithms/object_vertices.hpp"
+#include "algorithms/raster/object_vertices.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {

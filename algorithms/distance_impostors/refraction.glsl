@@ -1,5 +1,5 @@
 // A ray inside a dielectric (Sec. 4). REFRACTOR: there is a refractor map, and a ray refracts again where it leaves.
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/optics.glsl"
 
 uniform float ior;
 uniform vec3 absorption;

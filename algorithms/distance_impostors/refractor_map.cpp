@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/object_vertices.hpp"
+#include "algorithms/raster/object_vertices.hpp"
 
 namespace pellucid::distance_impostors {
 

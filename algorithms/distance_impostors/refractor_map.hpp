@@ -1,7 +1,7 @@
 #pragma once
 
-#include "algorithms/cube_pass.hpp"
 #include "algorithms/distance_impostors/star_shape.hpp"
+#include "algorithms/raster/cube_pass.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"
 

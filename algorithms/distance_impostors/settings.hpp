@@ -2,8 +2,8 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/cube_pass.hpp"
 #include "algorithms/distance_impostors/hit_search.hpp"
+#include "algorithms/raster/cube_pass.hpp"
 
 /// What distance_impostors and its baseline environment_map have in common, apart from how each declares it.
 namespace pellucid::distance_impostors {

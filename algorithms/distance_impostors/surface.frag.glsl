@@ -1,7 +1,7 @@
 // A mirror, metal or dielectric in localized light (Sec. 3 and 4).
 #include "algorithms/distance_impostors/lookup.glsl"
 #include "algorithms/distance_impostors/surface_point.glsl"
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/optics.glsl"
 #if KIND == 3
 #include "algorithms/distance_impostors/refraction.glsl"
 #endif

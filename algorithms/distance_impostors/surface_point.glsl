@@ -1,6 +1,6 @@
 // The point of a mirror, metal or dielectric that a fragment shows: of a triangle, or with FROM_PIXELS what
 // object_pixels.frag.glsl kept of one. KIND: 1 mirror, 2 metal, 3 dielectric.
-#include "algorithms/shaders/common/octahedron.glsl"
+#include "algorithms/shaders/octahedron.glsl"
 
 uniform vec3 eye;
 

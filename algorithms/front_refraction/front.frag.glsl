@@ -1,6 +1,6 @@
 // Fresnel's two shares of the environment at the first interface.
-#include "algorithms/shaders/common/environment.glsl"
-#include "algorithms/shaders/common/mirror.glsl"
+#include "algorithms/shaders/environment.glsl"
+#include "algorithms/shaders/mirror.glsl"
 
 in vec3 world_position;
 in vec3 world_normal;

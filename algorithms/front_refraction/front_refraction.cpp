@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "algorithms/forward_pass.hpp"
-#include "algorithms/mirror.hpp"
+#include "algorithms/raster/forward_pass.hpp"
+#include "algorithms/raster/mirror.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::front_refraction {
@@ -19,9 +19,9 @@ class FrontRefraction final : public Technique {
               gl::PassTimer& timer) override {
     gl::Defines defines = forward.environment_defines();
     if (!program_ || defines != defines_) {
-      program_ = gl::Program(
-          "front refraction",
-          {"algorithms/shaders/common/opaque.vert.glsl", "algorithms/front_refraction/front.frag.glsl"}, defines);
+      program_ =
+          gl::Program("front refraction",
+                      {"algorithms/shaders/opaque.vert.glsl", "algorithms/front_refraction/front.frag.glsl"}, defines);
       defines_ = std::move(defines);
     }
     {

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/scene/atomic_file.hpp"
-#include "algorithms/scene/hash.hpp"
+#include "algorithms/scene/files/atomic_file.hpp"
+#include "algorithms/scene/files/hash.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {

@@ -1,7 +1,7 @@
 // Where rays enter the objects: the search runs in a pass of its own over whole pixels, since triangles may be smaller than
 // one. A record of four numbers, for the passes are bound by memory: depth, normal, and whose entry it is.
 #include "algorithms/geocube/entry.glsl"
-#include "algorithms/shaders/common/octahedron.glsl"
+#include "algorithms/shaders/octahedron.glsl"
 
 in vec3 object_normal;
 flat in int last_cube;

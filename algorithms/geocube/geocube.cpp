@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algorithms/forward_pass.hpp"
 #include "algorithms/geocube/glass_pass.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 
 namespace pellucid::geocube {
 namespace {

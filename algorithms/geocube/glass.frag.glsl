@@ -1,9 +1,9 @@
 // Refraction at both sides and internal reflection: Chan and Wang 2005, Sec. 2.
 #include "algorithms/geocube/entry.glsl"
 #include "algorithms/geocube/search.glsl"
-#include "algorithms/shaders/common/environment.glsl"
-#include "algorithms/shaders/common/octahedron.glsl"
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/environment.glsl"
+#include "algorithms/shaders/octahedron.glsl"
+#include "algorithms/shaders/optics.glsl"
 
 layout(binding = 5) uniform sampler2D entries;
 #ifdef SPLIT

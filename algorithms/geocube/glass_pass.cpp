@@ -4,14 +4,14 @@
 #include <cmath>
 #include <string>
 
-#include "algorithms/mirror.hpp"
-#include "algorithms/pixel_area.hpp"
+#include "algorithms/raster/mirror.hpp"
+#include "algorithms/raster/pixel_area.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {
 namespace {
 
-const std::string kFullscreen = "algorithms/shaders/common/fullscreen.vert.glsl";
+const std::string kFullscreen = "algorithms/shaders/fullscreen.vert.glsl";
 const std::string kGlass = "algorithms/geocube/glass.frag.glsl";
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "algorithms/forward_pass.hpp"
 #include "algorithms/geocube/geocube.hpp"
 #include "algorithms/geocube/glass_object.hpp"
 #include "algorithms/geocube/native_errors.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"

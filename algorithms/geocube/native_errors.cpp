@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algorithms/native_map.hpp"
-#include "algorithms/optics.hpp"
+#include "algorithms/raster/native_map.hpp"
+#include "algorithms/shaders/optics.hpp"
 
 namespace pellucid::geocube {
 namespace {

@@ -1,6 +1,6 @@
 // A mirror or a metal under the environment.
-#include "algorithms/shaders/common/environment.glsl"
-#include "algorithms/shaders/common/mirror.glsl"
+#include "algorithms/shaders/environment.glsl"
+#include "algorithms/shaders/mirror.glsl"
 
 in vec3 object_position;
 in vec3 object_normal;

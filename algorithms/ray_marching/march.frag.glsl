@@ -1,6 +1,6 @@
 // The whole volume in one pass: N points between the box's entry and its exit or the opaque object before it.
-#include "algorithms/shaders/common/medium.glsl"
-#include "algorithms/shaders/common/integrate.glsl"
+#include "algorithms/shaders/medium.glsl"
+#include "algorithms/shaders/integrate.glsl"
 
 layout(binding = 1) uniform sampler2D eye_distance_map;
 uniform vec3 view_axis;  // unit, into the screen

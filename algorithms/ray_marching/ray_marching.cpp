@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/box_slicing.hpp"
-#include "algorithms/forward_pass.hpp"
-#include "algorithms/medium.hpp"
+#include "algorithms/media/box_slicing.hpp"
+#include "algorithms/media/medium.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::ray_marching {
@@ -87,8 +87,8 @@ class RayMarching final : public Technique {
       defines.emplace_back("JITTER_STRIDE", fmt::to_string(golden_stride(parameters_.tile * parameters_.tile)));
     }
     if (program_ && defines == defines_) return;
-    program_ = gl::Program(
-        "march", {"algorithms/shaders/common/medium.vert.glsl", "algorithms/ray_marching/march.frag.glsl"}, defines);
+    program_ = gl::Program("march", {"algorithms/shaders/medium.vert.glsl", "algorithms/ray_marching/march.frag.glsl"},
+                           defines);
     defines_ = std::move(defines);
   }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "algorithms/optics.hpp"
+#include "algorithms/shaders/optics.hpp"
 
 namespace pellucid {
 namespace {

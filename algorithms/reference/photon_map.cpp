@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "algorithms/scene/noise.hpp"
+#include "algorithms/scene/shapes/noise.hpp"
 
 namespace pellucid {
 namespace {

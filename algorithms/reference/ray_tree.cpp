@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/optics.hpp"
+#include "algorithms/shaders/optics.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 #include "algorithms/scene/scene.hpp"
 
 /// Ground truth on the CPU: one tracer (Embree, TBB) that grows with the papers. It shades as the forward pass does and

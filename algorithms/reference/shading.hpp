@@ -10,7 +10,7 @@
 
 #include "algorithms/scene/scene.hpp"
 
-/// Light on surfaces and in the medium, in double precision: the C++ twin of algorithms/shaders/common/lighting.glsl.
+/// Light on surfaces and in the medium, in double precision: the C++ twin of algorithms/shaders/lighting.glsl.
 namespace pellucid {
 
 /// What a light gives to a plane at a point that faces it.

@@ -1,6 +1,6 @@
 // Front faces of a hull into the back buffer: N points on the valid path, blended once (Sec. 3.2 and Fig. 7).
-#include "algorithms/shaders/common/medium.glsl"
-#include "algorithms/shaders/common/integrate.glsl"
+#include "algorithms/shaders/medium.glsl"
+#include "algorithms/shaders/integrate.glsl"
 
 layout(binding = 1) uniform sampler2D coordinates_map;
 flat in float sample_offset;

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/box_slicing.hpp"
-#include "algorithms/forward_pass.hpp"
-#include "algorithms/medium.hpp"
+#include "algorithms/media/box_slicing.hpp"
+#include "algorithms/media/medium.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::sampling_hulls {
@@ -111,10 +111,10 @@ class SamplingHulls final : public Technique {
 
   void compile(gl::Defines defines) {
     if (!coordinates_) {
-      coordinates_ = gl::Program("hull coordinates", {"algorithms/shaders/common/opaque.vert.glsl",
+      coordinates_ = gl::Program("hull coordinates", {"algorithms/shaders/opaque.vert.glsl",
                                                       "algorithms/sampling_hulls/coordinates.frag.glsl"});
-      back_ = gl::Program("hull back",
-                          {"algorithms/shaders/common/box.vert.glsl", "algorithms/sampling_hulls/back.frag.glsl"});
+      back_ =
+          gl::Program("hull back", {"algorithms/shaders/box.vert.glsl", "algorithms/sampling_hulls/back.frag.glsl"});
     }
     defines.emplace_back("SAMPLES", fmt::to_string(parameters_.samples));
     if (parameters_.samples <= kMostUnrolledSamples) {
@@ -126,8 +126,7 @@ class SamplingHulls final : public Technique {
     if (parameters_.filter_occlusion) defines.emplace_back("FILTER_OCCLUSION", "1");
     if (front_ && defines == front_defines_) return;
     front_ = gl::Program("hull front",
-                         {"algorithms/shaders/common/medium.vert.glsl", "algorithms/sampling_hulls/front.frag.glsl"},
-                         defines);
+                         {"algorithms/shaders/medium.vert.glsl", "algorithms/sampling_hulls/front.frag.glsl"}, defines);
     front_defines_ = std::move(defines);
   }
 

@@ -1,8 +1,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "algorithms/scene/procedural.hpp"
-#include "algorithms/scene/volume_rows.hpp"
+#include "algorithms/scene/shapes/procedural.hpp"
+#include "algorithms/scene/volumes/volume_rows.hpp"
 
 namespace pellucid {
 
@@ -21,7 +21,7 @@ std::vector<float> make_cone_scattering(const glm::ivec3& size, const ConeShape&
       const double x = across(i, size.x);
       const double distance2 = x * x + y * y + z * z;
       const double cosine = z / std::sqrt(distance2);
-      // As light_irradiance() of shaders/common/lighting.glsl: smoothstep of the cosine over the squared distance.
+      // As light_irradiance() of shaders/lighting.glsl: smoothstep of the cosine over the squared distance.
       const double t = glm::clamp((cosine - cos_outer) / (cos_inner - cos_outer), 0.0, 1.0);
       row[static_cast<std::size_t>(i)] = static_cast<float>(t * t * (3 - 2 * t) / distance2);
     }

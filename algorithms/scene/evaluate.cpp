@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/scene/procedural.hpp"
-#include "algorithms/scene/scene_description.hpp"
+#include "algorithms/scene/shapes/procedural.hpp"
+#include "algorithms/scene/toml/scene_description.hpp"
 
 namespace pellucid {
 

@@ -8,7 +8,7 @@
 #include <toml++/toml.h>
 
 #include "algorithms/scene/scene.hpp"
-#include "algorithms/scene/scene_source.hpp"
+#include "algorithms/scene/toml/scene_source.hpp"
 #include "gl/resources.hpp"
 
 namespace pellucid {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "algorithms/scene/scene_source.hpp"
+#include "algorithms/scene/toml/scene_source.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {

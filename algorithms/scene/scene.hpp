@@ -14,7 +14,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "algorithms/parameters.hpp"
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 
 /// A scene is plain data, in metres and scene-linear Rec. 709 radiance, right-handed, y up. It knows no GL.
 namespace pellucid {

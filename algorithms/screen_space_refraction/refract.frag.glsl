@@ -1,6 +1,6 @@
 // Wyman 2005, Sec. 3: refraction in, the far side by two depths, refraction out.
-#include "algorithms/shaders/common/environment.glsl"
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/environment.glsl"
+#include "algorithms/shaders/optics.glsl"
 
 in vec3 world_position;
 in vec3 world_normal;

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/forward_pass.hpp"
-#include "algorithms/mirror.hpp"
+#include "algorithms/raster/forward_pass.hpp"
+#include "algorithms/raster/mirror.hpp"
 #include "algorithms/reference/geometry.hpp"
-#include "algorithms/scene/bounds.hpp"
+#include "algorithms/scene/shapes/bounds.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::screen_space_refraction {

@@ -1,5 +1,5 @@
 // One slice: the density of its plane stands for its whole slab (Imagire et al. 2007, Sec. 2.1 and Fig. 2).
-#include "algorithms/shaders/common/medium.glsl"
+#include "algorithms/shaders/medium.glsl"
 
 uniform vec3 slab_axis;  // unit, across the slabs
 uniform float slab_m;    // thickness along it

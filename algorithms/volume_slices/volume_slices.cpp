@@ -4,9 +4,9 @@
 #include <optional>
 #include <utility>
 
-#include "algorithms/box_slicing.hpp"
-#include "algorithms/forward_pass.hpp"
-#include "algorithms/medium.hpp"
+#include "algorithms/media/box_slicing.hpp"
+#include "algorithms/media/medium.hpp"
+#include "algorithms/raster/forward_pass.hpp"
 #include "gl/program.hpp"
 
 namespace pellucid::volume_slices {
@@ -59,8 +59,8 @@ class VolumeSlices final : public Technique {
   void compile(gl::Defines defines, bool image_aligned) {
     if (!image_aligned) defines.emplace_back("CLIP_AT_NEAR_PLANE", "1");
     if (program_ && defines == defines_) return;
-    program_ = gl::Program(
-        "slice", {"algorithms/shaders/common/medium.vert.glsl", "algorithms/volume_slices/slice.frag.glsl"}, defines);
+    program_ = gl::Program("slice", {"algorithms/shaders/medium.vert.glsl", "algorithms/volume_slices/slice.frag.glsl"},
+                           defines);
     defines_ = std::move(defines);
   }
 

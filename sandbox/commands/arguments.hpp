@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 
 /// Arguments that several sub-commands take, read one way.
 namespace pellucid::sandbox {

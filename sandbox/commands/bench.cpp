@@ -1,5 +1,5 @@
 // pellucid bench.
-#include "sweeps/bench.hpp"
+#include "sweeps/bench/bench.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -17,7 +17,7 @@
 #include "gl/error.hpp"
 #include "sandbox/commands/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/provenance.hpp"
+#include "sweeps/store/provenance.hpp"
 
 namespace pellucid::sandbox {
 namespace {

@@ -1,6 +1,6 @@
 #include "sandbox/commands/frame_options.hpp"
 
-#include "sweeps/provenance.hpp"
+#include "sweeps/store/provenance.hpp"
 
 namespace pellucid::sandbox {
 

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 #include "sandbox/commands/arguments.hpp"
 
 /// What render and reference share: which picture of which scene, where it goes, and what its file says of itself.

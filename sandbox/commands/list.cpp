@@ -9,7 +9,7 @@
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
-#include "sandbox/papers.hpp"
+#include "sandbox/reproduce/papers.hpp"
 
 namespace pellucid::sandbox {
 namespace {

@@ -10,12 +10,12 @@
 
 #include "algorithms/parameters.hpp"
 #include "gl/error.hpp"
-#include "plots/chart.hpp"
-#include "plots/figures.hpp"
-#include "plots/row_chart.hpp"
+#include "plots/charts/chart.hpp"
+#include "plots/figures/figures.hpp"
+#include "plots/figures/row_chart.hpp"
 #include "sandbox/commands/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/store.hpp"
+#include "sweeps/store/store.hpp"
 
 namespace pellucid::sandbox {
 namespace {

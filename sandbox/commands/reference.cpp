@@ -10,15 +10,15 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "algorithms/raster/shadow_maps.hpp"
 #include "algorithms/render_session.hpp"
-#include "algorithms/shadow_maps.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
 #include "sandbox/commands/scene_facts.hpp"
+#include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/metrics/metrics.hpp"
-#include "sweeps/reference_methods.hpp"
-#include "sweeps/worker_protocol.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
 namespace {

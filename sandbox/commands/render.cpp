@@ -13,7 +13,7 @@
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
 #include "sandbox/commands/scene_facts.hpp"
-#include "sandbox/native_maps.hpp"
+#include "sandbox/reproduce/native_maps.hpp"
 
 namespace pellucid::sandbox {
 namespace {

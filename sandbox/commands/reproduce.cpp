@@ -6,8 +6,8 @@
 
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sandbox/reproduce_file.hpp"
-#include "sandbox/reproduce_paper.hpp"
+#include "sandbox/reproduce/reproduce_file.hpp"
+#include "sandbox/reproduce/reproduce_paper.hpp"
 
 namespace pellucid::sandbox {
 namespace {

@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/scene/atomic_file.hpp"
+#include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/csv.hpp"
-#include "sweeps/store.hpp"
-#include "sweeps/tables.hpp"
+#include "sweeps/store/csv.hpp"
+#include "sweeps/store/store.hpp"
+#include "sweeps/tables/tables.hpp"
 
 namespace pellucid::sandbox {
 namespace {

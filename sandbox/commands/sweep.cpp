@@ -12,13 +12,13 @@
 
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/plan.hpp"
-#include "sweeps/progress.hpp"
-#include "sweeps/run.hpp"
-#include "sweeps/spec.hpp"
-#include "sweeps/store.hpp"
-#include "sweeps/worker.hpp"
-#include "sweeps/worker_protocol.hpp"
+#include "sweeps/spec/plan.hpp"
+#include "sweeps/spec/spec.hpp"
+#include "sweeps/store/store.hpp"
+#include "sweeps/workers/progress.hpp"
+#include "sweeps/workers/run.hpp"
+#include "sweeps/workers/worker.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
 namespace {

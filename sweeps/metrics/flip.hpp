@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 
 namespace pellucid::sweeps {
 

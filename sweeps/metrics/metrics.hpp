@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 #include "sweeps/metrics/flip.hpp"
 
 namespace pellucid::sweeps {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 
 namespace pellucid::sweeps {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 
 namespace pellucid::sweeps {
 

@@ -1,4 +1,4 @@
-#include "algorithms/box_slicing.hpp"
+#include "algorithms/media/box_slicing.hpp"
 
 #include <array>
 #include <map>

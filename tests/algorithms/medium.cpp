@@ -1,9 +1,9 @@
 // What the techniques over a medium share.
-#include "algorithms/medium.hpp"
+#include "algorithms/media/medium.hpp"
 
 #include <gtest/gtest.h>
 
-#include "algorithms/shadow_maps.hpp"
+#include "algorithms/raster/shadow_maps.hpp"
 #include "tests/algorithms/rendered.hpp"
 #include "tests/algorithms/scenes.hpp"
 

@@ -1,6 +1,6 @@
 // Runs the shader functions that have C++ twins on the inputs of the test.
-#include "algorithms/shaders/common/opacity.glsl"
-#include "algorithms/shaders/common/valid_path.glsl"
+#include "algorithms/shaders/opacity.glsl"
+#include "algorithms/shaders/valid_path.glsl"
 
 layout(local_size_x = 64) in;
 

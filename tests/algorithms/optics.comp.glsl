@@ -1,5 +1,5 @@
 // Runs the laws of optics on the inputs of the test.
-#include "algorithms/shaders/common/optics.glsl"
+#include "algorithms/shaders/optics.glsl"
 
 layout(local_size_x = 64) in;
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/optics.hpp"
+#include "algorithms/shaders/optics.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "tests/algorithms/compute.hpp"

@@ -27,7 +27,7 @@ MediumPoint medium_at(vec3 p) { return MediumPoint(path.length_samples_offset_ex
 vec3 medium_source(MediumPath along, float t, vec3 albedo, vec4 visible) { return albedo * visible.xyz + vec3(visible.w, 0.0, 0.0); }
 
 #define FILTER_OCCLUSION
-#include "algorithms/shaders/common/integrate.glsl"
+#include "algorithms/shaders/integrate.glsl"
 
 void main() {
   uint k = gl_GlobalInvocationID.x;

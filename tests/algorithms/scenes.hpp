@@ -2,8 +2,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "algorithms/scene/procedural.hpp"
 #include "algorithms/scene/scene.hpp"
+#include "algorithms/scene/shapes/procedural.hpp"
 
 /// Small scenes with known answers, built in memory.
 namespace pellucid::test {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/optics.hpp"
 #include "algorithms/render_session.hpp"
-#include "algorithms/scene/procedural.hpp"
+#include "algorithms/scene/shapes/procedural.hpp"
+#include "algorithms/shaders/optics.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid {

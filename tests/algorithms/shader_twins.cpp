@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/opacity.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
-#include "algorithms/shadows.hpp"
-#include "algorithms/valid_path.hpp"
+#include "algorithms/shaders/opacity.hpp"
+#include "algorithms/shaders/shadows.hpp"
+#include "algorithms/shaders/valid_path.hpp"
 #include "gl/program.hpp"
 #include "tests/algorithms/compute.hpp"
 #include "tests/algorithms/rendered.hpp"

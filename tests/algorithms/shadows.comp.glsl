@@ -1,5 +1,5 @@
 // Runs the occlusion functions that have C++ twins on the inputs of the test.
-#include "algorithms/shaders/common/occlusion.glsl"
+#include "algorithms/shaders/occlusion.glsl"
 
 layout(local_size_x = 64) in;
 

@@ -1,5 +1,5 @@
 // Variance shadow maps and anti-aliased occlusion rates.
-#include "algorithms/shadows.hpp"
+#include "algorithms/shaders/shadows.hpp"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/shadow_maps.hpp"
+#include "algorithms/raster/shadow_maps.hpp"
 #include "gl/program.hpp"
 #include "tests/algorithms/compute.hpp"
 #include "tests/algorithms/rendered.hpp"

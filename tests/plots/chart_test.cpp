@@ -1,5 +1,5 @@
 // Charts as files: well-formed, inside their frame, nothing dropped.
-#include "plots/chart.hpp"
+#include "plots/charts/chart.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <expat.h>
 #include <gtest/gtest.h>
 
-#include "algorithms/scene/image.hpp"
+#include "algorithms/scene/images/image.hpp"
 #include "gl/error.hpp"
 #include "tests/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 // The window of the largest error, enlarged pixels, one contrast for all.
-#include "plots/close_up.hpp"
+#include "plots/pictures/close_up.hpp"
 
 #include <gtest/gtest.h>
 

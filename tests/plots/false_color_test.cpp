@@ -1,4 +1,4 @@
-#include "plots/false_color.hpp"
+#include "plots/pictures/false_color.hpp"
 
 #include <cmath>
 #include <limits>

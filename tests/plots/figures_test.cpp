@@ -1,10 +1,10 @@
-#include "plots/figures.hpp"
+#include "plots/figures/figures.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/spec.hpp"
+#include "sweeps/spec/spec.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {

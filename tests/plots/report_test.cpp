@@ -1,5 +1,5 @@
 // The report: a well-formed page whose every link leads to a file beside it.
-#include "plots/report.hpp"
+#include "plots/report/report.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "gl/error.hpp"
-#include "tests/scene/folder_test.hpp"
+#include "tests/algorithms/scene/folder_test.hpp"
 
 namespace pellucid::plots {
 namespace {

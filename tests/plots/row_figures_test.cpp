@@ -1,12 +1,12 @@
 // Figures that are data: their specs measure what they draw.
-#include "plots/row_figures.hpp"
+#include "plots/figures/row_figures.hpp"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "sweeps/spec.hpp"
+#include "sweeps/spec/spec.hpp"
 
 namespace pellucid::plots {
 namespace {

@@ -1,12 +1,12 @@
 // What a chart shows of a store's rows: chosen, grouped, never pooled.
-#include "plots/rows.hpp"
+#include "plots/figures/rows.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "plots/figures.hpp"
-#include "plots/row_chart.hpp"
+#include "plots/figures/figures.hpp"
+#include "plots/figures/row_chart.hpp"
 
 namespace pellucid::plots {
 namespace {

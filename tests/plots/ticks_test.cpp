@@ -1,4 +1,4 @@
-#include "plots/ticks.hpp"
+#include "plots/charts/ticks.hpp"
 
 #include <string>
 #include <utility>

@@ -1,9 +1,9 @@
 // Ratios of interleaved blocks.
-#include "sweeps/bench.hpp"
+#include "sweeps/bench/bench.hpp"
 
 #include <gtest/gtest.h>
 
-#include "sweeps/bench_reference.hpp"
+#include "sweeps/bench/bench_reference.hpp"
 
 namespace pellucid::sweeps {
 namespace {

@@ -1,5 +1,5 @@
 // Where a picture's error lies, by class.
-#include "sweeps/class_errors.hpp"
+#include "sweeps/measure/class_errors.hpp"
 
 #include <limits>
 

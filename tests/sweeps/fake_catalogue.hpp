@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "gl/error.hpp"
-#include "sweeps/catalogue.hpp"
-#include "sweeps/plan.hpp"
-#include "sweeps/spec.hpp"
+#include "sweeps/spec/catalogue.hpp"
+#include "sweeps/spec/plan.hpp"
+#include "sweeps/spec/spec.hpp"
 #include "tests/temporary_folder.hpp"
 
 /// Techniques and scenes that need no GL: what specs, plans and sweeps are tested with.

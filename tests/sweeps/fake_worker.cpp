@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/run.hpp"
-#include "sweeps/worker.hpp"
-#include "sweeps/worker_protocol.hpp"
+#include "sweeps/workers/run.hpp"
+#include "sweeps/workers/worker.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps::test {

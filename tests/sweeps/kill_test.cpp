@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/store.hpp"
+#include "sweeps/store/store.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 

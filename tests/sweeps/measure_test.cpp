@@ -1,4 +1,4 @@
-#include "sweeps/measure.hpp"
+#include "sweeps/measure/measure.hpp"
 
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 #include "gl/context.hpp"
 #include "gl/error.hpp"
-#include "sweeps/run.hpp"
-#include "sweeps/store.hpp"
+#include "sweeps/store/store.hpp"
+#include "sweeps/workers/run.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 

@@ -1,11 +1,11 @@
-#include "sweeps/plan.hpp"
+#include "sweeps/spec/plan.hpp"
 
 #include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "sweeps/constraint.hpp"
+#include "sweeps/spec/constraint.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps {

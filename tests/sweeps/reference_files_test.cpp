@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gl/error.hpp"
-#include "sweeps/reference_cache.hpp"
+#include "sweeps/measure/reference_cache.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps {

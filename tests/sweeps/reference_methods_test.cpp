@@ -1,5 +1,5 @@
 // What a reference can be: settings as JSON, the shadows' region, the picture of many slices.
-#include "sweeps/reference_methods.hpp"
+#include "sweeps/measure/reference_methods.hpp"
 
 #include <fstream>
 
@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/context.hpp"
-#include "sweeps/measure.hpp"
-#include "sweeps/worker_protocol.hpp"
+#include "sweeps/measure/measure.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/context.hpp"
-#include "sweeps/measure.hpp"
+#include "sweeps/measure/measure.hpp"
 #include "tests/glass_ball.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 

@@ -1,4 +1,4 @@
-#include "sweeps/run.hpp"
+#include "sweeps/workers/run.hpp"
 
 #include <chrono>
 #include <fstream>
@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/store.hpp"
-#include "sweeps/worker_process.hpp"
+#include "sweeps/store/store.hpp"
+#include "sweeps/workers/worker_process.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 

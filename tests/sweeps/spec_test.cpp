@@ -1,4 +1,4 @@
-#include "sweeps/spec.hpp"
+#include "sweeps/spec/spec.hpp"
 
 #include <gtest/gtest.h>
 

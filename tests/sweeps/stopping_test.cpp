@@ -1,4 +1,4 @@
-#include "sweeps/stopping.hpp"
+#include "sweeps/measure/stopping.hpp"
 
 #include <algorithm>
 #include <cmath>

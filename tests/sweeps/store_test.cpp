@@ -1,4 +1,4 @@
-#include "sweeps/store.hpp"
+#include "sweeps/store/store.hpp"
 
 #include <fstream>
 
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/sqlite.hpp"
+#include "sweeps/store/sqlite.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps {

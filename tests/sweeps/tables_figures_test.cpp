@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "sweeps/plan.hpp"
-#include "sweeps/tables.hpp"
+#include "sweeps/spec/plan.hpp"
+#include "sweeps/tables/tables.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps::test {

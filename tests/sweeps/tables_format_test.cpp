@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "sweeps/csv.hpp"
-#include "sweeps/tables.hpp"
+#include "sweeps/store/csv.hpp"
+#include "sweeps/tables/tables.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps::test {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "sweeps/tables.hpp"
+#include "sweeps/tables/tables.hpp"
 
 namespace pellucid::sweeps {
 namespace {

@@ -1,5 +1,5 @@
 // The papers' tables: published numbers, ours beside them, and which rows a table takes.
-#include "sweeps/tables.hpp"
+#include "sweeps/tables/tables.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "sweeps/plan.hpp"
+#include "sweeps/spec/plan.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps::test {

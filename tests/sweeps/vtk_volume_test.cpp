@@ -1,5 +1,5 @@
 // VTK's picture of a volume against ours and against the reference.
-#include "sweeps/vtk_volume.hpp"
+#include "sweeps/bench/vtk_volume.hpp"
 
 #include <cmath>
 

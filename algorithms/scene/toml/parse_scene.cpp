@@ -1,0 +1,95 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "algorithms/scene/files/asset_path.hpp"
+#include "algorithms/scene/files/hash.hpp"
+#include "algorithms/scene/toml/scene_description.hpp"
+
+namespace pellucid {
+
+void parse_scene(std::string_view text, const std::filesystem::path& folder, SceneDescription& scene) {
+  toml::table document;
+  try {
+    document = toml::parse(text, scene.file.shown);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw scene.file.error({static_cast<int>(at.line), static_cast<int>(at.column)}, error.description());
+  }
+  TableReader root(scene.file, document, "", scene.targets);
+  root.text("title", scene.title, Need::required);
+  root.text("description", scene.description);
+  root.text("stand_in", scene.stand_in);
+  root.set_affected(Affected{Part::ambient, 0});
+  root.color("ambient", scene.ambient, kRadiance);
+  root.set_affected(std::nullopt);
+  parse_materials(root, scene);
+  parse_meshes(root, folder, scene);
+  parse_instances(root, scene);
+  parse_forest(root, scene);
+  parse_lights(root, scene);
+  parse_volume(root, folder, scene);
+  parse_environment(root, folder, scene);
+  parse_views(root, scene);
+  parse_parameters(root, scene);
+  root.finish();
+}
+
+std::filesystem::path parse_file_name(TableReader& reader, std::string_view key, const std::filesystem::path& folder,
+                                      SceneDescription& scene) {
+  std::string reference;
+  reader.text(key, reference, Need::required);
+  return located(reader, key, [&] {
+    std::filesystem::path path = resolve_asset(reference, folder);
+    scene.files_read.emplace_back(reference, sha256_file(path));
+    return path;
+  });
+}
+
+void parse_views(TableReader& root, SceneDescription& scene) {
+  root.require("views");
+  for (auto& [name, reader] : root.named_tables("views")) {
+    const Affected affected{Part::view, scene.views.size()};
+    ViewDescription& view = scene.views.emplace_back();
+    view.name = name;
+    view.place = reader.place();
+    reader.set_affected(affected);
+    parse_position(reader, "eye", view.eye, view.eye_path, Need::required);
+    parse_position(reader, "target", view.target, view.target_path, Need::required);
+    reader.vector("up", view.up, kCoordinate);
+    reader.number("fov_y_deg", view.fov_y_deg, {0, 179, true});
+    reader.number("near_m", view.near_m, kLength);
+    reader.number("far_m", view.far_m, kLength);
+    view.spin = parse_spin(reader);
+    reader.finish();
+    if (view.eye_path || view.target_path || view.spin) scene.animated.push_back(affected);
+  }
+  if (scene.views.empty()) root.fail("views", "a scene has at least one view");
+}
+
+void parse_environment(TableReader& root, const std::filesystem::path& folder, SceneDescription& scene) {
+  std::optional<TableReader> reader = root.table("environment");
+  if (!reader) return;
+  EnvironmentDescription& environment = scene.environment;
+  reader->set_affected(Affected{Part::environment, 0});
+  reader->number("scale", environment.scale, {0, 1e6});
+  for (const char* key : {"zenith", "horizon", "ground"})
+    reader->exclude("image", key);
+  if (reader->has("image")) {
+    const std::filesystem::path path = parse_file_name(*reader, "image", folder, scene);
+    ImageFile file = located(*reader, "image", [&] { return read_image(path); });
+    if (file.display_encoded) reader->fail("image", "an environment is scene-linear: an EXR file, not PNG");
+    for (const float v : file.image.pixels) {
+      if (!std::isfinite(v)) reader->fail("image", "it has a pixel that is not finite");
+    }
+    environment.image = std::move(file.image);
+  } else {
+    reader->color("zenith", environment.zenith, kRadiance);
+    reader->color("horizon", environment.horizon, kRadiance);
+    reader->color("ground", environment.ground, kRadiance);
+  }
+  reader->finish();
+}
+
+}  // namespace pellucid

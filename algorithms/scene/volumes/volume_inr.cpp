@@ -1,0 +1,94 @@
+#include <bit>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "algorithms/scene/volumes/volume_formats.hpp"
+
+/// INRIMAGE-4: a header of 256-byte blocks of lines "KEY=value" that ends in "##}", then the voxels.
+namespace pellucid {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kMagic = "#INRIMAGE-4#{";
+constexpr std::size_t kBlock = 256;
+
+struct InrHeader {
+  std::map<std::string, std::string> values;
+  std::size_t bytes = 0;
+
+  std::string text(const std::string& key, std::string otherwise = {}) const {
+    const auto found = values.find(key);
+    return found == values.end() ? otherwise : found->second;
+  }
+};
+
+InrHeader read_header(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  while (text.size() < 64 * kBlock) {
+    std::string block(kBlock, '\0');
+    const bool whole = static_cast<bool>(file.read(block.data(), kBlock));
+    text += block;
+    if (!text.starts_with(kMagic)) fail_volume(path, fmt::format("it does not begin with '{}'", kMagic));
+    if (!whole) break;
+    if (!text.ends_with("##}\n")) continue;
+    InrHeader header;
+    header.bytes = text.size();
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      const auto equals = line.find('=');
+      if (equals != std::string::npos) header.values[line.substr(0, equals)] = line.substr(equals + 1);
+    }
+    return header;
+  }
+  fail_volume(path, "its header has no end");
+}
+
+VoxelType type_of(const fs::path& path, const InrHeader& header) {
+  const std::string kind = header.text("TYPE");
+  std::string bits = header.text("PIXSIZE");
+  if (bits.ends_with(" bits")) bits.resize(bits.size() - 5);
+  VoxelType type;
+  if (kind == "float") type = voxel_type(VoxelKind::floating, header_size(path, "PIXSIZE", bits));
+  if (kind == "unsigned fixed") type = voxel_type(VoxelKind::unsigned_integer, header_size(path, "PIXSIZE", bits));
+  if (kind == "signed fixed") type = voxel_type(VoxelKind::signed_integer, header_size(path, "PIXSIZE", bits));
+  if (type.bytes == 0) fail_volume(path, fmt::format("voxels of TYPE={} and PIXSIZE={} are not read", kind, bits));
+  return type;
+}
+
+bool is_swapped(const fs::path& path, const InrHeader& header) {
+  const std::string cpu = header.text("CPU");
+  const bool little = cpu == "decm" || cpu == "alpha" || cpu == "pc";
+  const bool big = cpu == "sun" || cpu == "sgi";
+  if (!little && !big) fail_volume(path, fmt::format("CPU={} is none of decm, alpha, pc, sun and sgi", cpu));
+  return little != (std::endian::native == std::endian::little);
+}
+
+}  // namespace
+
+VolumeFile load_inr(const fs::path& path) {
+  const InrHeader text = read_header(path);
+  VolumeHeader header;
+  for (int c = 0; c < 3; ++c) {
+    const std::string letter(1, "XYZ"[c]);
+    header.size[c] = header_size(path, letter + "DIM", text.text(letter + "DIM"));
+    header.spacing[c] = header_number(path, "V" + letter, text.text("V" + letter, "1"));
+  }
+  header.components = header_size(path, "VDIM", text.text("VDIM", "1"));
+  const VoxelType type = type_of(path, text);
+  const bool swapped = is_swapped(path, text);
+  const std::uintmax_t bytes = fs::file_size(path) - text.bytes;
+  check_header(path, header, bytes);
+  if (bytes != header.count() * type.bytes) {
+    fail_volume(path,
+                fmt::format("{} bytes of voxels where its header promises {}", bytes, header.count() * type.bytes));
+  }
+  return {header.size, header.spacing, decode_voxels(read_behind(path, text.bytes), type, swapped), {}};
+}
+
+}  // namespace pellucid

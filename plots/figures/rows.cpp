@@ -1,0 +1,329 @@
+#include "plots/figures/rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/technique.hpp"
+#include "gl/error.hpp"
+#include "plots/charts/style.hpp"
+
+namespace pellucid::plots {
+namespace {
+
+using nlohmann::json;
+
+std::string text_of(const json& row, std::string_view field) {
+  const auto found = row.find(std::string(field));
+  return found == row.end() ? std::string() : value_text(*found);
+}
+
+bool meets(const json& row, const Condition& condition) {
+  const auto found = row.find(condition.field);
+  if (found == row.end()) return false;
+  if (found->is_number()) {
+    double wanted = 0;
+    const char* const end = condition.value.data() + condition.value.size();
+    const auto [stopped, error] = std::from_chars(condition.value.data(), end, wanted);
+    return error == std::errc{} && stopped == end && found->get<double>() == wanted;
+  }
+  return value_text(*found) == condition.value;
+}
+
+void check_field(const std::vector<json>& rows, const std::string& field) {
+  std::set<std::string> names;
+  for (const json& row : rows) {
+    for (const auto& [name, value] : row.items()) {
+      if (name == field) return;
+      names.insert(name);
+    }
+  }
+  const std::vector<std::string> candidates(names.begin(), names.end());
+  const std::string near = nearest_name(field, candidates);
+  throw InputError(fmt::format("no row has a field '{}'{}", field,
+                               near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)));
+}
+
+/// The distinct values of a field, quoted; at most eight.
+std::string listed(const std::vector<const json*>& rows, const std::string& field) {
+  std::vector<std::string> values;
+  for (const json* row : rows) {
+    const std::string value = text_of(*row, field);
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+  constexpr std::size_t kMost = 8;
+  const bool more = values.size() > kMost;
+  if (more) values.resize(kMost);
+  return fmt::format("'{}'{}", fmt::join(values, "', '"), more ? ", …" : "");
+}
+
+void check_one_machine(const std::vector<const json*>& rows) {
+  for (const char* field : {"device", "driver"}) {
+    for (const json* row : rows) {
+      if (text_of(*row, field) == text_of(*rows.front(), field)) continue;
+      throw InputError(fmt::format("rows of more than one {} are never pooled: {}; choose with --where {}=…", field,
+                                   listed(rows, field), field));
+    }
+  }
+}
+
+/// The same whatever technique draws: differences between techniques count.
+bool is_common(std::string_view setting) {
+  return setting == "scene" || setting == "view" || setting == "size" || setting.find('.') != std::string_view::npos;
+}
+
+bool is_timing(const std::string& field) {
+  return field == "fps" || field.starts_with("frame_ms");
+}
+
+const ParameterTable* table_of(const std::string& technique) {
+  for (const TechniqueInfo& info : techniques()) {
+    if (info.name == technique) return &info.table();
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<double> number(const json& row, std::string_view field) {
+  const auto found = row.find(std::string(field));
+  if (found == row.end() || !found->is_number()) return std::nullopt;
+  const double value = found->get<double>();
+  if (!std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string value_text(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+  return value.dump();
+}
+
+Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> conditions,
+                 std::span<const std::string> fields) {
+  if (rows.empty())
+    throw InputError("there are no rows to draw: the store is empty, or no point has been measured yet");
+  std::vector<const json*> left;
+  for (const json& row : rows)
+    left.push_back(&row);
+  for (const Condition& condition : conditions) {
+    check_field(rows, condition.field);
+    std::vector<const json*> next;
+    std::copy_if(left.begin(), left.end(), std::back_inserter(next),
+                 [&](const json* row) { return meets(*row, condition); });
+    if (next.empty()) {
+      throw InputError(fmt::format("no row has {} = {}; there are {}", condition.field, condition.value,
+                                   listed(left, condition.field)));
+    }
+    left = std::move(next);
+  }
+
+  // A field that is a parameter of some technique does not exist for the others.
+  std::set<std::string> parameters;
+  for (const json* row : left) {
+    for (const auto& [name, value] : settings(*row))
+      parameters.insert(name);
+  }
+  Rows result;
+  std::set<std::string> seen;
+  for (const json* row : left) {
+    std::vector<std::string> missing;
+    std::copy_if(fields.begin(), fields.end(), std::back_inserter(missing),
+                 [&](const std::string& field) { return !number(*row, field); });
+    if (std::any_of(missing.begin(), missing.end(), [&](const auto& field) { return parameters.contains(field); })) {
+      continue;
+    }
+    if (row->contains("point") && !seen.insert(text_of(*row, "point")).second) continue;
+    if (text_of(*row, "status") == "failed")
+      ++result.failed;
+    else if (missing.empty())
+      result.kept.push_back(row);
+    else if (text_of(*row, "timing") == "off" && std::all_of(missing.begin(), missing.end(), is_timing))
+      ++result.untimed;
+    else
+      ++result.incomplete;
+  }
+  if (result.kept.empty()) {
+    for (const std::string& field : fields)
+      check_field(rows, field);
+    throw InputError(fmt::format("nothing to draw: no row has a number for {}; {} failed, {} were not timed",
+                                 fmt::join(fields, " and "), result.failed, result.untimed));
+  }
+  check_one_machine(result.kept);
+  result.unconverged =
+      static_cast<std::size_t>(std::count_if(result.kept.begin(), result.kept.end(),
+                                             [](const json* row) { return text_of(*row, "timing") == "unconverged"; }));
+  return result;
+}
+
+std::vector<std::pair<std::string, std::string>> settings(const json& row) {
+  std::vector<std::pair<std::string, std::string>> result;
+  const std::string technique = text_of(row, "technique");
+  result.emplace_back("technique", technique);
+  for (const char* field : {"scene", "view"}) {
+    if (row.contains(field)) result.emplace_back(field, text_of(row, field));
+  }
+  if (row.contains("width") && row.contains("height")) {
+    result.emplace_back("size", fmt::format("{}×{}", text_of(row, "width"), text_of(row, "height")));
+  }
+  const ParameterTable* table = table_of(technique);
+  for (const auto& [name, value] : row.items()) {
+    const bool parameter = name.find('.') != std::string::npos || (table != nullptr && table->find(name) != nullptr);
+    if (parameter) result.emplace_back(name, value_text(value));
+  }
+  return result;
+}
+
+namespace {
+
+/// How often each setting takes each value: over all techniques for what is common to them, else for each technique by
+/// itself. Settings that never change are left out.
+class Variation {
+ public:
+  Variation(const Rows& rows, std::span<const std::string> own) {
+    for (const json* row : rows.kept) {
+      const std::string technique = text_of(*row, "technique");
+      for (const auto& [name, value] : settings(*row)) {
+        if (name == "technique" || std::find(own.begin(), own.end(), name) != own.end()) continue;
+        Setting& setting = settings_[key(technique, name)];
+        setting.name = name;
+        auto found = std::find_if(setting.values.begin(), setting.values.end(),
+                                  [&](const auto& known) { return known.first == value; });
+        if (found == setting.values.end()) found = setting.values.insert(found, {value, 0});
+        ++found->second;
+        const auto raw = row->find(name);
+        if (raw == row->end() || !raw->is_string()) setting.in_words = false;
+      }
+    }
+    std::erase_if(settings_, [](const auto& entry) { return entry.second.values.size() < 2; });
+  }
+
+  bool varies(const std::string& technique, const std::string& name) const {
+    return settings_.contains(key(technique, name));
+  }
+  /// Whether it goes without saying: the value, a word, is the one that most rows have.
+  bool is_usual(const std::string& technique, const std::string& name, const std::string& value) const {
+    const Setting& setting = settings_.at(key(technique, name));
+    return setting.in_words && setting.usual() == value;
+  }
+  /// "coordinates automatic", each once.
+  std::vector<std::string> usual() const {
+    std::vector<std::string> result;
+    for (const auto& [place, setting] : settings_) {
+      const std::string text = setting.name + " " + setting.usual();
+      if (setting.in_words && std::find(result.begin(), result.end(), text) == result.end()) result.push_back(text);
+    }
+    return result;
+  }
+
+ private:
+  struct Setting {
+    std::string name;
+    std::vector<std::pair<std::string, std::size_t>> values;  ///< in the order of their first appearance
+    bool in_words = true;
+    const std::string& usual() const {
+      return std::max_element(values.begin(), values.end(),
+                              [](const auto& a, const auto& b) { return a.second < b.second; })
+          ->first;
+    }
+  };
+  static std::string key(const std::string& technique, const std::string& name) {
+    return is_common(name) ? name : technique + "\n" + name;
+  }
+  std::map<std::string, Setting> settings_;
+};
+
+}  // namespace
+
+std::vector<Group> group_rows(const Rows& rows, std::span<const std::string> own, Labels labels) {
+  const Variation variation(rows, own);
+  const bool by_technique = std::find(own.begin(), own.end(), "technique") == own.end();
+  const bool one_technique = std::all_of(rows.kept.begin(), rows.kept.end(), [&](const json* row) {
+    return text_of(*row, "technique") == text_of(*rows.kept.front(), "technique");
+  });
+  std::vector<Group> groups;
+  std::vector<std::string> keys;  // of the groups: every setting that divides, named in the label or not
+  for (const json* row : rows.kept) {
+    const std::string technique = text_of(*row, "technique");
+    std::string key = by_technique ? technique : std::string();
+    std::vector<std::string> parts;
+    for (const auto& [name, value] : settings(*row)) {
+      if (!variation.varies(technique, name)) continue;
+      key += fmt::format("\n{}={}", name, value);
+      if (labels == Labels::unusual && variation.is_usual(technique, name, value)) continue;
+      parts.push_back(fmt::format("{} = {}", name, value));
+    }
+    const auto found = std::find(keys.begin(), keys.end(), key);
+    if (found == keys.end()) {
+      if (by_technique && (!one_technique || parts.empty())) parts.insert(parts.begin(), technique_title(technique));
+      const auto variant =
+          std::count_if(groups.begin(), groups.end(), [&](const Group& g) { return g.technique == technique; });
+      groups.push_back(
+          {fmt::format("{}", fmt::join(parts, ", ")), technique, static_cast<std::size_t>(variant), {row}});
+      keys.push_back(key);
+    } else {
+      groups[static_cast<std::size_t>(found - keys.begin())].rows.push_back(row);
+    }
+  }
+  return groups;
+}
+
+std::string usual_note(const Rows& rows, std::span<const std::string> own) {
+  const std::vector<std::string> usual = Variation(rows, own).usual();
+  return usual.empty() ? std::string() : fmt::format("Unless named: {}.", fmt::join(usual, ", "));
+}
+
+void check_distinct(const std::vector<Group>& groups, std::span<const std::string> own) {
+  for (const Group& group : groups) {
+    std::map<std::string, const json*> seen;
+    for (const json* row : group.rows) {
+      std::vector<std::string> parts;
+      for (const std::string& name : own) {
+        if (row->contains(name)) parts.push_back(fmt::format("{} = {}", name, text_of(*row, name)));
+      }
+      const std::string place = fmt::format("{}", fmt::join(parts, ", "));
+      const auto [first, fresh] = seen.try_emplace(place, row);
+      if (fresh) continue;
+      throw InputError(
+          fmt::format("'{}' was measured more than once at {} (points {} and {}), and measurements are "
+                      "never pooled; choose with --where sweep=…, block=… or point=…",
+                      group.label, place, text_of(*first->second, "point"), text_of(*row, "point")));
+    }
+  }
+}
+
+std::string provenance_note(const Rows& rows, bool timed) {
+  std::vector<std::string> parts;
+  const auto common = [&](const std::string& field) -> std::string {
+    const std::string first = text_of(*rows.kept.front(), field);
+    const bool all =
+        std::all_of(rows.kept.begin(), rows.kept.end(), [&](const json* row) { return text_of(*row, field) == first; });
+    return all ? first : std::string();
+  };
+  if (const std::string scene = common("scene"); !scene.empty()) parts.push_back(scene);
+  if (const std::string width = common("width"), height = common("height"); !width.empty() && !height.empty()) {
+    parts.push_back(fmt::format("{}×{}", width, height));
+  }
+  if (const std::string device = common("device"); !device.empty()) parts.push_back(device);
+  if (const std::string clock = common("clock"); timed && !clock.empty()) {
+    parts.push_back(clock == "gpu_query" ? "GPU timer queries" : "clock read after glFinish");
+  }
+  std::string note = fmt::format("{}.", fmt::join(parts, ", "));
+  if (parts.empty()) note.clear();
+  const auto add = [&](std::size_t count, std::string_view one, std::string_view many) {
+    if (count > 0) note += fmt::format("{}{} {}.", note.empty() ? "" : " ", count, count == 1 ? one : many);
+  };
+  add(rows.failed, "failed point left out", "failed points left out");
+  add(rows.untimed, "point measured without timing left out", "points measured without timing left out");
+  add(rows.incomplete, "point without these measurements left out", "points without these measurements left out");
+  if (timed) add(rows.unconverged, "frame time did not converge", "frame times did not converge");
+  return note;
+}
+
+}  // namespace pellucid::plots

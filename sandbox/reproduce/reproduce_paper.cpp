@@ -1,0 +1,267 @@
+#include "sandbox/reproduce/reproduce_paper.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/scene/files/atomic_file.hpp"
+#include "gl/error.hpp"
+#include "plots/figures/figures.hpp"
+#include "sandbox/commands/arguments.hpp"
+#include "sandbox/commands/commands.hpp"
+#include "sandbox/reproduce/reproduce_report.hpp"
+#include "sweeps/spec/plan.hpp"
+#include "sweeps/store/provenance.hpp"
+#include "sweeps/store/store.hpp"
+#include "sweeps/workers/progress.hpp"
+
+namespace pellucid::sandbox {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+std::vector<const Paper*> wanted(std::string_view what) {
+  std::vector<const Paper*> out;
+  if (what != "all") return {&find_paper(what, std::vector<std::string_view>{"all"})};
+  for (const Paper& paper : papers())
+    out.push_back(&paper);
+  return out;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw RuntimeError(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
+}
+
+/// Adds the time of a part to the outcome when it is over, and says so.
+class Part {
+ public:
+  Part(PaperOutcome& outcome, std::string name) : outcome_(outcome), name_(std::move(name)) {}
+  void done() {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    outcome_.seconds.emplace_back(name_, seconds);
+    fmt::print(stderr, "{}: {}: {:.1f} s\n", outcome_.paper->name, name_, seconds);
+  }
+
+ private:
+  PaperOutcome& outcome_;
+  std::string name_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder, PaperOutcome& outcome) {
+  // All specs are read before the first is measured: a mistake in the last shows at once.
+  std::vector<sweeps::Spec> specs;
+  for (const std::string_view name : options.preview ? outcome.paper->preview_specs : outcome.paper->specs)
+    specs.push_back(sweeps::load_spec(std::string(name)));
+  for (const sweeps::Spec& spec : specs) {
+    fmt::print(stderr, "{}: sweep {}\n", outcome.paper->name, spec.name);
+    SweepOutcome sweep{.name = spec.name,
+                       .title = spec.title,
+                       .store = (folder / (spec.name + ".db")).string(),
+                       .summary = {},
+                       .rows = {}};
+    sweeps::RunOptions run;
+    run.device = options.device;
+    run.references = folder / "references";  // one paper's sweeps look at the same scenes
+    sweep.summary = sweeps::run_sweep(spec, sweep.store, run);
+    if (sweep.summary.interrupted) throw RuntimeError("interrupted; the same command goes on where this one stopped");
+    sweep.rows = sweeps::read_rows(sweep.store);
+    outcome.sweeps.push_back(std::move(sweep));
+  }
+}
+
+// The device that the sweeps ran on; empty when no row tells.
+std::string device_of(const PaperOutcome& outcome) {
+  for (const SweepOutcome& sweep : outcome.sweeps) {
+    for (const json& row : sweep.rows) {
+      if (std::string device = row.value("device", ""); !device.empty()) return device;
+    }
+  }
+  return "";
+}
+
+void draw_all_pictures(const PaperOptions& options, const std::filesystem::path& folder, PaperOutcome& outcome) {
+  for (const PaperPictures& set : outcome.paper->pictures) {
+    PictureOptions drawing{.folder = folder / "pictures" / set.name,
+                           .device = options.device,
+                           .preview = options.preview,
+                           .made_on = device_of(outcome),
+                           .say = {}};
+    drawing.say = [&](const std::string& what) {
+      fmt::print(stderr, "{}: {}: {}\n", outcome.paper->name, set.name, what);
+    };
+    make_folder(drawing.folder);
+    PicturesOutcome result{.name = std::string(set.name),
+                           .title = std::string(set.title),
+                           .drawn = {},
+                           .folder = fmt::format("{}/pictures/{}", outcome.folder, set.name),
+                           .missing = {}};
+    try {
+      result.drawn = draw_pictures(set, drawing);
+    } catch (const std::exception& e) {
+      // The sweeps before it may have taken hours: the report shows them, and why this is missing.
+      result.missing = e.what();
+      fmt::print(stderr, "{}: {}: not drawn: {}\n", outcome.paper->name, set.name, e.what());
+    }
+    outcome.pictures.push_back(std::move(result));
+  }
+}
+
+// The sweep that measures `spec`'s rows, in full or as a preview; null when the paper has none.
+const SweepOutcome* sweep_of(const PaperOutcome& outcome, const std::string& spec) {
+  for (const SweepOutcome& sweep : outcome.sweeps) {
+    if (sweep.name == spec || sweep.name == spec + "_preview") return &sweep;
+  }
+  return nullptr;
+}
+
+void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
+  const std::string prefix = std::string(outcome.paper->name) + ".";
+  make_folder(folder / "tables");
+  for (const sweeps::TableInfo& info : sweeps::tables()) {
+    if (!info.name.starts_with(prefix)) continue;
+    const SweepOutcome* sweep = sweep_of(outcome, info.spec);
+    const sweeps::Table table = sweeps::make_table(info.name, sweep == nullptr ? std::vector<json>{} : sweep->rows);
+    const std::string name = info.name.substr(prefix.size());
+    using enum sweeps::TableFormat;
+    for (const auto& [format, extension] : {std::pair{markdown, ".md"}, std::pair{csv, ".csv"},
+                                            std::pair{latex, ".tex"}, std::pair{sweeps::TableFormat::json, ".json"}})
+      write_text_file(folder / "tables" / (name + extension), format_table(table, format));
+    outcome.tables.push_back({.table = table, .path = outcome.folder + "/tables/" + name});
+  }
+}
+
+void write_figures(const std::filesystem::path& folder, PaperOutcome& outcome) {
+  const std::string prefix = std::string(outcome.paper->name) + ".";
+  make_folder(folder / "figures");
+  for (const plots::FigureInfo& info : plots::figures()) {
+    if (!info.name.starts_with(prefix)) continue;
+    const std::string name = info.name.substr(prefix.size());
+    FigureOutcome figure{
+        .name = info.name, .title = info.title, .doc = info.doc, .path = {}, .missing = {}, .repeat = {}};
+    const SweepOutcome* sweep = sweep_of(outcome, info.spec);
+    if (sweep == nullptr) {
+      figure.missing = fmt::format("the paper's sweeps have no {}", info.spec);
+    } else {
+      try {
+        for (const char* extension : {".svg", ".png", ".pdf"})
+          plots::write_figure(info.name, sweep->rows, folder / "figures" / (name + extension));
+        figure.path = outcome.folder + "/figures/" + name;
+      } catch (const InputError& e) {
+        figure.missing = e.what();  // nothing left to draw when its points failed: the report says so
+      }
+      figure.repeat = fmt::format("pellucid plot {} --store {} -o {}", info.name, sweeps::shell_word(sweep->store),
+                                  sweeps::shell_word((folder / "figures" / (name + ".svg")).string()));
+    }
+    outcome.figures.push_back(std::move(figure));
+  }
+}
+
+PaperOutcome reproduce(const Paper& paper, const PaperOptions& options) {
+  PaperOutcome outcome;
+  outcome.paper = &paper;
+  outcome.preview = options.preview;
+  outcome.folder = paper.name;
+  outcome.started_utc = sweeps::utc_text(sweeps::unix_now_s());
+  std::vector<std::string> command = process_arguments();
+  if (!command.empty()) command.front() = "pellucid";
+  outcome.command = sweeps::shell_line(command);
+  if (options.device) outcome.device_option = fmt::format(" --device {}", *options.device);
+  const std::filesystem::path folder = options.folder / paper.name;
+  make_folder(folder);
+  Part sweeping(outcome, "sweeps");
+  run_sweeps(options, folder, outcome);
+  sweeping.done();
+  Part drawing(outcome, "pictures");
+  draw_all_pictures(options, folder, outcome);
+  drawing.done();
+  Part writing(outcome, "tables and figures");
+  write_tables(folder, outcome);
+  write_figures(folder, outcome);
+  writing.done();
+  return outcome;
+}
+
+ordered_json text_or_null(const std::string& text) {
+  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+}
+
+ordered_json to_json(const PaperOutcome& outcome) {
+  ordered_json out{{"paper", outcome.paper->name}, {"preview", outcome.preview}, {"failed", outcome.failed()}};
+  for (const auto& [part, seconds] : outcome.seconds)
+    out["seconds"][part] = seconds;
+  out["sweeps"] = ordered_json::array();
+  for (const SweepOutcome& sweep : outcome.sweeps) {
+    const auto drift = sweep.summary.baseline_drift;
+    out["sweeps"].push_back({{"sweep", sweep.name},
+                             {"store", sweep.store},
+                             {"planned", sweep.summary.planned},
+                             {"reused", sweep.summary.reused},
+                             {"measured", sweep.summary.measured},
+                             {"failed", sweep.failed()},
+                             {"unconverged", sweep.unconverged()},
+                             {"baseline_drift_max", drift ? ordered_json(*drift) : ordered_json(nullptr)},
+                             {"wall_s", sweep.summary.wall_s}});
+  }
+  out["tables"] = ordered_json::array();
+  for (const TableOutcome& table : outcome.tables)
+    out["tables"].push_back(table.path);
+  out["figures"] = ordered_json::array();
+  for (const FigureOutcome& figure : outcome.figures)
+    out["figures"].push_back(
+        {{"figure", figure.name}, {"path", text_or_null(figure.path)}, {"missing", text_or_null(figure.missing)}});
+  out["pictures"] = ordered_json::array();
+  for (const PicturesOutcome& set : outcome.pictures) {
+    if (!set.missing.empty()) out["pictures"].push_back({{"set", set.name}, {"missing", set.missing}});
+    for (const DrawnPicture& picture : set.drawn.pictures) {
+      ordered_json entry{{"set", set.name},
+                         {"picture", picture.name},
+                         {"exr", set.folder + "/" + picture.exr},
+                         {"kept", picture.kept}};
+      for (const auto& [metric, value] : picture.metrics)
+        entry[metric] = value;
+      if (!picture.native_exr.empty()) {
+        entry["map"] = set.folder + "/" + picture.native_exr;
+        entry[set.drawn.native_name + "_mean"] = picture.native_mean;
+      }
+      out["pictures"].push_back(std::move(entry));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+int reproduce_papers(const PaperOptions& options) {
+  const std::vector<const Paper*> chosen = wanted(options.what);
+  make_folder(options.folder);
+  std::vector<PaperOutcome> outcomes;
+  for (const Paper* paper : chosen)
+    outcomes.push_back(reproduce(*paper, options));
+  const std::filesystem::path page = options.folder / "index.html";
+  plots::write_report(make_report(outcomes), page);
+
+  std::size_t failed = 0;
+  for (const PaperOutcome& outcome : outcomes)
+    failed += outcome.failed();
+  if (options.json) {
+    ordered_json out{{"page", page.string()}, {"failed", failed}, {"papers", ordered_json::array()}};
+    for (const PaperOutcome& outcome : outcomes)
+      out["papers"].push_back(to_json(outcome));
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    fmt::print("{}\n", page.string());
+  }
+  if (failed > 0)
+    fmt::print(stderr, "{} points or sets of pictures failed; {} says which and why\n", failed, page.string());
+  return failed > 0 ? kFailed : kDone;
+}
+
+}  // namespace pellucid::sandbox

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "plots/report/report.hpp"
+#include "sandbox/reproduce/papers.hpp"
+#include "sandbox/reproduce/reproduce_pictures.hpp"
+#include "sweeps/tables/tables.hpp"
+#include "sweeps/workers/run.hpp"
+
+namespace pellucid::sandbox {
+
+struct SweepOutcome {
+  std::string name, title;
+  std::string store;  ///< path as a user would type it
+  sweeps::SweepSummary summary;
+  std::vector<nlohmann::json> rows;
+  /// Points with `status` failed, and with `timing` unconverged, whoever measured them.
+  std::size_t failed() const;
+  std::size_t unconverged() const;
+};
+
+struct TableOutcome {
+  sweeps::Table table;
+  std::string path;  ///< relative to the page, without extension: md, csv, tex and json stand there
+};
+
+struct FigureOutcome {
+  std::string name, title, doc;
+  std::string path;     ///< relative to the page, without extension: svg, png and pdf stand there; empty without data
+  std::string missing;  ///< why there is none
+  std::string repeat;   ///< a command line that draws it alone
+};
+
+struct PicturesOutcome {
+  std::string name, title;  ///< of PaperPictures
+  DrawnPictures drawn;
+  std::string folder;   ///< relative to the page
+  std::string missing;  ///< why there are none; empty when they are drawn
+};
+
+/// What came of one paper.
+struct PaperOutcome {
+  const Paper* paper = nullptr;
+  bool preview = false;
+  std::string folder;   ///< of its results, relative to the page
+  std::string command;  ///< that made all of it
+  std::string started_utc;
+  std::vector<SweepOutcome> sweeps;
+  std::vector<TableOutcome> tables;
+  std::vector<FigureOutcome> figures;
+  std::vector<PicturesOutcome> pictures;
+  std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, in order
+  std::string device_option;                            ///< " --device N", or empty
+  std::size_t failed() const;                           ///< points, and sets of pictures
+};
+
+/// The page that shows them all.
+plots::Report make_report(const std::vector<PaperOutcome>&);
+
+}  // namespace pellucid::sandbox

@@ -1,0 +1,250 @@
+#include "sweeps/measure/measure.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "gl/context.hpp"
+#include "gl/error.hpp"
+#include "gl/timer.hpp"
+#include "sweeps/measure/class_errors.hpp"
+#include "sweeps/measure/stopping.hpp"
+#include "sweeps/store/provenance.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+constexpr std::size_t kWarmUpFrames = 64;
+constexpr double kWarmUpShare = 0.25;  ///< of max_seconds
+constexpr int kPassFrames = 5;
+constexpr int kFramesInFlight = 8;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Resets the kernel's high-water mark of the resident set. Where it refuses, the mark stands since the process began.
+void reset_peak_rss() {
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+std::size_t peak_rss_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
+  }
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Draws frames one behind the other without waiting for the GPU, and hands on their times in order.
+class FrameTimes {
+ public:
+  FrameTimes(RenderSession& session, gl::Detail detail) : session_(session), timer_(detail) {}
+  gl::Clock clock() const { return timer_.clock(); }
+
+  /// Draws frames until one's time is known.
+  gl::FrameTime next() {
+    for (;;) {
+      if (in_flight_ > 0) {
+        if (auto time = in_flight_ >= kFramesInFlight ? timer_.wait() : timer_.poll()) {
+          --in_flight_;
+          return std::move(*time);
+        }
+      }
+      session_.render(timer_);
+      ++in_flight_;
+    }
+  }
+  /// Waits for what is still being drawn, so that it does not reach into what is timed next.
+  void drain() {
+    while (in_flight_ > 0 && timer_.wait())
+      --in_flight_;
+  }
+
+ private:
+  RenderSession& session_;
+  gl::PassTimer timer_;
+  int in_flight_ = 0;
+};
+
+void check_finite(const Image& image) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (std::isfinite(image.pixels[i])) continue;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t pixel = i / channels;
+    const auto width = static_cast<std::size_t>(image.width);
+    throw RuntimeError(fmt::format("the frame has a value that is not finite ({}) at pixel ({}, {}), channel {}",
+                                   image.pixels[i], pixel % width, pixel / width, i % channels));
+  }
+}
+
+}  // namespace
+
+void Measurer::open_session(const Point& point) {
+  const std::string key = fmt::format("{}\n{}", point.scene, point.technique);
+  if (!session_ || session_key_ != key) {
+    session_.reset();  // before the next is made: their memory must not add up
+    session_.emplace(load_scene(point.scene), point.technique, point.view, point.size.width, point.size.height);
+    session_key_ = key;
+    prepare_s_ = 0;
+    assigned_.clear();
+  }
+  // Only what differs: an assignment may cost a program or a precomputation. The session rounds reals to float, so what
+  // was assigned is remembered.
+  const nlohmann::json current = session_->parameters();
+  for (const auto& [name, value] : point.parameters) {
+    const auto before = assigned_.find(name);
+    const bool same = before != assigned_.end() ? before->second == value
+                                                : current.contains(name) && current.at(name) == value_to_json(value);
+    if (!same) session_->assign(name, value);
+    assigned_[name] = value;
+  }
+  const Camera& camera = session_->camera();
+  if (camera.width != point.size.width || camera.height != point.size.height) {
+    session_->resize(point.size.width, point.size.height);
+  }
+  session_->set_view(session_->scene().find_view(point.view));
+  if (const double seconds = session_->prepare(); seconds > 0) prepare_s_ = seconds;
+}
+
+void Measurer::time_frames(const Point& point, Measurement& result) {
+  FrameTimes frames(*session_, gl::Detail::frame);
+  WarmUp warm_up(kWarmUpFrames, kWarmUpShare * point.timing.max_seconds);
+  while (!warm_up.done())
+    warm_up.add(frames.next().frame_ms);
+
+  StoppingRule rule(point.timing);
+  result.row["timed_unix_s"] = unix_now_s();
+  const auto start = std::chrono::steady_clock::now();
+  while (rule.verdict() == Verdict::more) {
+    const double frame_ms = frames.next().frame_ms;
+    if (!std::isfinite(frame_ms) || frame_ms < 0)
+      throw RuntimeError(fmt::format("the clock gave {} ms for a frame", frame_ms));
+    rule.add(frame_ms, seconds_since(start));
+  }
+  frames.drain();
+
+  const TimingSummary summary = summarise(rule.samples_ms());
+  nlohmann::json& row = result.row;
+  row["frame_ms_median"] = summary.median_ms;
+  row["frame_ms_ci95_low"] = summary.ci95_ms.low;
+  row["frame_ms_ci95_high"] = summary.ci95_ms.high;
+  row["frame_ms_mean"] = summary.mean_ms;
+  row["frame_ms_q25"] = summary.q25_ms;
+  row["frame_ms_q75"] = summary.q75_ms;
+  if (summary.median_ms > 0) row["fps"] = 1000 / summary.median_ms;
+  row["frames"] = rule.samples_ms().size();
+  row["warmup_frames"] = warm_up.frames();
+  row["timing"] = rule.verdict() == Verdict::converged ? "converged" : "unconverged";
+  row["clock"] = gl::name(frames.clock());
+  result.frame_ms_samples = rule.samples_ms();
+}
+
+void Measurer::time_passes(Measurement& result) {
+  FrameTimes frames(*session_, gl::Detail::passes);
+  std::map<std::string, std::vector<double>> samples;
+  for (int i = 0; i < kPassFrames; ++i) {
+    for (const auto& [name, ms] : frames.next().pass_ms)
+      samples[name].push_back(ms);
+  }
+  frames.drain();
+  nlohmann::json passes = nlohmann::json::object();
+  for (auto& [name, values] : samples) {
+    std::sort(values.begin(), values.end());
+    passes[name] = quantile(values, 0.5);
+  }
+  result.row["pass_ms"] = std::move(passes);
+}
+
+void Measurer::compare(const Point& point, const std::filesystem::path& references, Measurement& result) {
+  const Image color = session_->read_color();
+  check_finite(color);
+  session_->technique().native_errors(result.row);
+  if (point.metrics.empty()) return;
+  if (!references_ || references_->folder() != references) references_ = std::make_unique<ReferenceCache>(references);
+  const auto reference = references_->get(*session_, point, [&](double share) { progress_("reference", share); });
+  progress_("metrics", 0);
+  const ComparisonResult compared = reference->comparison.compare(color);
+  put_values(result.row, compared);
+  if (session_->technique_info().classes && compared.flip_map.width > 0) {
+    for (const NativeMap& map : session_->technique().native_maps())
+      put_class_errors(result.row, map, compared.flip_map);
+  }
+  result.row["reference_step_error_max"] = reference->step_error_max;
+  result.row["reference_step_error_mean"] = reference->step_error_mean;
+  result.row["reference_unconverged_share"] = reference->unconverged_share;
+  result.row["reference_method"] = name(point.reference.method);
+  if (reference->traced) {
+    const SurfaceStatistics& traced = *reference->traced;
+    result.row["reference_samples"] = traced.samples;
+    result.row["reference_standard_error_max"] = traced.standard_error_max;
+    result.row["reference_standard_error_mean"] = traced.standard_error_mean;
+    result.row["reference_caustic_error_max"] = traced.caustic_standard_error_max;
+    result.row["reference_caustic_error_mean"] = traced.caustic_standard_error_mean;
+    result.row["reference_cut_weight_max"] = traced.cut_weight_max;
+    result.row["reference_cut_weight_mean"] = traced.cut_weight_mean;
+    result.row["reference_lost_weight_mean"] = traced.lost_weight_mean;
+    result.row["reference_trace_s"] = traced.trace_s;
+  }
+  if (reference->shadow_pixels_share) result.row["shadow_pixels_share"] = *reference->shadow_pixels_share;
+  if (reference->to_exact) {
+    result.row["reference_to_exact_rmse"] = reference->to_exact->at("rmse");
+    result.row["reference_to_exact_flip_mean"] = reference->to_exact->at("flip_mean");
+  }
+}
+
+Measurement Measurer::measure(const Point& point, const std::filesystem::path& references) {
+  try {
+    Measurement result;
+    progress_("prepare", 0);
+    reset_peak_rss();
+    open_session(point);
+    gl::PassTimer untimed;
+    session_->render(untimed);
+    if (point.timing.enabled) {
+      progress_("timing", 0);
+      time_frames(point, result);
+      time_passes(result);
+    } else {
+      result.row["timing"] = "off";
+    }
+    result.row["prepare_s"] = prepare_s_;
+    result.row["gpu_bytes"] = gl::allocated_bytes();
+    result.row["peak_rss_bytes"] = peak_rss_bytes();
+    result.row["scene_hash"] = session_->scene().content_hash();
+    compare(point, references, result);
+    const nlohmann::json parameters = session_->parameters();
+    for (const auto& [name, value] : parameters.items()) {
+      assert(!result.row.contains(name) && "a parameter has the name of a result");
+      result.row[name] = value;
+    }
+    return result;
+  } catch (...) {
+    session_.reset();
+    throw;
+  }
+}
+
+Measurement Measurer::time(const Point& point) {
+  try {
+    Measurement result;
+    open_session(point);
+    time_frames(point, result);
+    return result;
+  } catch (...) {
+    session_.reset();
+    throw;
+  }
+}
+
+}  // namespace pellucid::sweeps

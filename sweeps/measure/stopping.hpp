@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sweeps/spec/spec.hpp"
+
+/// Statistics of frame times, and the rules that end warming up and sampling. No clock, no GL: samples go in.
+namespace pellucid::sweeps {
+
+/// Linear interpolation between order statistics (Hyndman and Fan 1996, type 7). `sorted` ascending, not empty.
+double quantile(std::span<const double> sorted, double q);
+
+struct Interval {
+  double low = 0;
+  double high = 0;
+};
+
+/// The percentile bootstrap interval of the median (Efron 1979) at the limit of infinitely many resamples, so that
+/// nothing is random: the r-th smallest of n draws with replacement is at most the k-th order statistic exactly when at
+/// least r draws fall on the k smallest samples, which is a binomial tail with p = k/n. The median of an even n lies
+/// between two ranks; the bounds are taken of the outer one each, which is never too narrow. `sorted` ascending, not
+/// empty.
+Interval bootstrap_median_interval(std::span<const double> sorted, double confidence = 0.95);
+
+struct TimingSummary {
+  double median_ms = 0;
+  Interval ci95_ms;
+  double q25_ms = 0, q75_ms = 0;
+  double mean_ms = 0;  ///< what work done every n-th frame costs a frame; the median does not see it
+};
+TimingSummary summarise(std::span<const double> samples_ms);
+
+/// Warm-up ends when the median of the last kWindow frames differs from that of the kWindow before by at most
+/// kTolerance of it, or at the cap.
+class WarmUp {
+ public:
+  static constexpr std::size_t kWindow = 3;
+  static constexpr double kTolerance = 0.02;
+  WarmUp(std::size_t max_frames, double max_seconds) : max_frames_(max_frames), max_seconds_(max_seconds) {}
+  void add(double frame_ms);
+  bool done() const { return settled() || capped(); }
+  bool settled() const;
+  std::size_t frames() const { return frames_ms_.size(); }
+
+ private:
+  bool capped() const;
+  std::size_t max_frames_;
+  double max_seconds_;
+  double total_ms_ = 0;
+  std::vector<double> frames_ms_;
+};
+
+enum class Verdict { more, converged, unconverged };
+
+/// Sampling ends when there are min_samples and the interval of the median is narrow enough (converged), or at
+/// max_samples or max_seconds (unconverged). A sample that is not finite or is negative is a bug of the caller.
+class StoppingRule {
+ public:
+  explicit StoppingRule(const TimingLimits& limits) : limits_(limits) {}
+  /// `elapsed_s`: wall time since sampling began.
+  Verdict add(double frame_ms, double elapsed_s);
+  Verdict verdict() const { return verdict_; }
+  const std::vector<double>& samples_ms() const { return samples_ms_; }
+
+ private:
+  bool narrow_enough() const;
+  TimingLimits limits_;
+  std::vector<double> samples_ms_;
+  std::size_t next_check_ = 0;
+  Verdict verdict_ = Verdict::more;
+};
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,66 @@
+#include "sweeps/spec/catalogue.hpp"
+
+#include <map>
+
+#include "algorithms/reference/reference.hpp"
+#include "algorithms/scene/files/hash.hpp"
+#include "algorithms/scene/scene.hpp"
+#include "algorithms/technique.hpp"
+#include "gl/resources.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+class Installed final : public Catalogue {
+ public:
+  std::vector<std::string> techniques() const override {
+    std::vector<std::string> names;
+    for (const TechniqueInfo& info : pellucid::techniques())
+      names.emplace_back(info.name);
+    return names;
+  }
+
+  std::vector<ParameterInfo> technique_parameters(std::string_view technique) const override {
+    const auto infos = find_technique(technique).table().infos();
+    return {infos.begin(), infos.end()};
+  }
+
+  std::string shader_hash(std::string_view technique) const override {
+    Sha256 hash;
+    for (const std::string& folder :
+         {std::string("algorithms/") + std::string(technique) + "/", std::string("algorithms/shaders/")}) {
+      for (const std::string& name : list_resources(folder, ".glsl")) {
+        hash.add(name);
+        hash.add(find_resource(name).value_or(std::string{}));  // an override of $PELLUCID_SHADER_PATH counts
+      }
+    }
+    return hash.hex();
+  }
+
+  const SceneFacts& scene(const std::string& name) const override {
+    const auto known = scenes_.find(name);
+    if (known != scenes_.end()) return known->second;
+    Scene scene = load_scene(name);
+    SceneFacts facts;
+    facts.content_hash = scene.content_hash();
+    for (const View& view : scene.views)
+      facts.views.push_back(view.name);
+    facts.interfaces = has_interfaces(scene);
+    facts.volume = scene.volume.has_value();
+    const auto infos = scene.parameters().infos();
+    facts.parameters.assign(infos.begin(), infos.end());
+    return scenes_.emplace(name, std::move(facts)).first->second;
+  }
+
+ private:
+  mutable std::map<std::string, SceneFacts> scenes_;
+};
+
+}  // namespace
+
+const Catalogue& installed_catalogue() {
+  static const Installed catalogue;
+  return catalogue;
+}
+
+}  // namespace pellucid::sweeps

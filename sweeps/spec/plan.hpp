@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sweeps/spec/spec.hpp"
+
+namespace pellucid::sweeps {
+
+/// One measurement: everything that determines its result.
+struct Point {
+  std::string id;  ///< 16 hex digits; the same for the same measurement in any block and any spec
+  std::string technique, scene, view;
+  Size size;
+  std::map<std::string, Value> parameters;  ///< the technique's, `scene.…`, `frame.…` and `shadow.…`, every one
+  std::vector<std::string> assigned;        ///< those that the spec gives, in order: axes, then fixed
+  std::vector<std::string> metrics;
+  TimingLimits timing;
+  ReferenceSettings reference;
+  std::string scene_hash;  ///< of the scene at its defaults
+  std::string shader_hash;
+};
+
+/// A point's place in a block. Two blocks may hold the same point; it is measured once.
+struct Member {
+  std::string block;
+  std::size_t point = 0;  ///< index into Plan::points
+};
+
+struct Plan {
+  std::vector<Point> points;            ///< in the order of the spec, each once
+  std::vector<Member> members;          ///< in the order of the spec
+  std::vector<std::size_t> order;       ///< in which points are measured
+  std::optional<std::size_t> baseline;  ///< the point that is measured again and again
+};
+
+/// No spec may ask for more points than this.
+inline constexpr std::size_t kMaxPoints = 100'000;
+
+/// Expands a spec. Throws InputError "source:line:column: …" when a constraint is wrong or leaves a block empty. The
+/// order is a seeded shuffle: points that share scene, size and precomputation run in chunks, chunks of different
+/// techniques interleave, and points within a chunk that share a program are neighbours.
+Plan make_plan(const Spec&, const Catalogue& = installed_catalogue());
+
+/// One line that renders the point by hand: `pellucid render SCENE -t … -s …`.
+std::string repeat_command(const Point&);
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,339 @@
+#include "sweeps/spec/spec.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "algorithms/render_session.hpp"
+#include "gl/error.hpp"
+#include "gl/resources.hpp"
+#include "sweeps/metrics/metrics.hpp"
+#include "sweeps/spec/spec_reader.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+constexpr std::size_t kMaxSpecBytes = 1U << 20;
+const std::vector<std::string> kDefaultMetrics{"mse", "rmse", "psnr", "ssim", "flip"};
+constexpr std::string_view kPapers = "sweeps/papers/";
+
+void read_timing(const SpecReader& read, const toml::table& parent, TimingLimits& limits) {
+  const toml::table* table = read.table(parent, "timing");
+  if (table == nullptr) return;
+  read.allow(*table, {"enabled", "min_samples", "max_samples", "max_seconds", "relative_ci"}, "timing");
+  read.boolean(*table, "enabled", limits.enabled);
+  read.integer(*table, "min_samples", 1, 1'000'000, limits.min_samples);
+  read.integer(*table, "max_samples", 1, 1'000'000, limits.max_samples);
+  read.real(*table, "max_seconds", 0.001, 86'400, limits.max_seconds);
+  read.real(*table, "relative_ci", 1e-6, 1, limits.relative_ci);
+  if (limits.max_samples < limits.min_samples) {
+    const char* key = table->contains("max_samples") ? "max_samples" : "min_samples";
+    read.fail(*table->get(key),
+              fmt::format("max_samples = {} is below min_samples = {}", limits.max_samples, limits.min_samples));
+  }
+}
+
+void read_reference(const SpecReader& read, const toml::table& parent, ReferenceSettings& settings) {
+  const toml::table* table = read.table(parent, "reference");
+  if (table == nullptr) return;
+  read.allow(*table,
+             {"method", "slices", "format", "surfaces", "tolerance", "max_steps", "shadow_share", "samples",
+              "reflections", "cut", "caustics", "photons"},
+             "reference");
+  std::string text;
+  if (read.text(*table, "method", text)) {
+    read.one_of(*table->get("method"), text, {"exact", "slices"}, "method");
+    settings.method = text == "exact" ? ReferenceMethod::exact : ReferenceMethod::slices;
+  }
+  if (read.text(*table, "surfaces", text)) {
+    read.one_of(*table->get("surfaces"), text, {"automatic", "raster", "forward", "rays"}, "surfaces");
+    settings.surfaces = text == "automatic" ? ReferenceSurfaces::automatic
+                        : text == "raster"  ? ReferenceSurfaces::raster
+                        : text == "forward" ? ReferenceSurfaces::forward
+                                            : ReferenceSurfaces::rays;
+  }
+  if (read.text(*table, "format", text)) {
+    read.one_of(*table->get("format"), text, {"half", "single"}, "format");
+    settings.format = text == "half" ? SlicesFormat::half : SlicesFormat::single;
+  }
+  read.integer(*table, "slices", 1, 4096, settings.slices);
+  for (const char* key : {"slices", "format"}) {
+    if (table->contains(key) && settings.method != ReferenceMethod::slices) {
+      read.fail(*table->get(key), fmt::format("{} is of method = \"slices\"; the exact reference has none", key));
+    }
+  }
+  read.real(*table, "tolerance", 1e-9, 1, settings.tolerance);
+  read.integer(*table, "max_steps", 64, 1'048'576, settings.max_steps);
+  read.real(*table, "shadow_share", 0, 0.99, settings.shadow_share);
+  read.integer(*table, "samples", 1, 65'536, settings.samples);
+  read.integer(*table, "reflections", 0, 1024, settings.reflections);
+  read.real(*table, "cut", 0, 1, settings.cut);
+  read.boolean(*table, "caustics", settings.caustics);
+  read.integer(*table, "photons", 1024, 1 << 28, settings.photons);
+}
+
+void read_metrics(const SpecReader& read, const toml::table& table, std::vector<std::string>& metrics) {
+  if (!table.contains("metrics")) return;
+  metrics.clear();
+  const std::vector<std::string> known = metric_names();
+  for (const SpecReader::Text& metric : read.texts(table, "metrics", true)) {
+    read.one_of(*metric.node, metric.value, known, "metric");
+    metrics.push_back(metric.value);
+  }
+  if (!metrics.empty()) metrics = MetricSet(metrics).names();
+}
+
+/// What one block draws from: every pair of technique and scene, whose tables must all know an axis.
+struct Owners {
+  const SpecReader& read;
+  const Catalogue& catalogue;
+  const RunBlock& block;
+
+  /// The tables that must hold `name`, and the name they know it by.
+  struct Owner {
+    std::string label;
+    std::vector<ParameterInfo> infos;
+  };
+  std::vector<Owner> owners_of(const std::string& name) const {
+    std::vector<Owner> owners;
+    if (name.starts_with("scene.")) {
+      for (const std::string& scene : block.scenes)
+        owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
+    } else if (const auto common = std::find_if(
+                   common_settings().begin(), common_settings().end(),
+                   [&](const CommonSettings& group) { return name.starts_with(std::string(group.prefix) + "."); });
+               common != common_settings().end()) {
+      owners.push_back({std::string(common->prefix), {common->table->infos().begin(), common->table->infos().end()}});
+    } else {
+      for (const std::string& technique : block.techniques) {
+        owners.push_back({technique, catalogue.technique_parameters(technique)});
+      }
+    }
+    return owners;
+  }
+
+  /// The parameter in every table; complains at the key.
+  std::vector<std::pair<std::string, ParameterInfo>> find(const SpecReader::Entry& entry) const {
+    const std::size_t dot = entry.name.find('.');
+    const std::string bare = dot == std::string::npos ? entry.name : entry.name.substr(dot + 1);
+    std::vector<std::pair<std::string, ParameterInfo>> found;
+    for (const Owner& owner : owners_of(entry.name)) {
+      const auto info =
+          std::find_if(owner.infos.begin(), owner.infos.end(), [&](const auto& i) { return i.name == bare; });
+      if (info == owner.infos.end()) read.fail(entry.at, unknown_parameter(bare, owner.label, owner.infos).what());
+      found.emplace_back(owner.label, *info);
+    }
+    return found;
+  }
+
+  Value check(const SpecReader::Entry& entry, const toml::node& node, const Value& value) const {
+    Value result = value;
+    for (const auto& [label, info] : find(entry)) {
+      try {
+        result = checked(info, value, label);
+      } catch (const InputError& e) {
+        read.fail(node, e.what());
+      }
+    }
+    return result;
+  }
+};
+
+std::vector<Value> read_axis(const SpecReader& read, const Owners& owners, const SpecReader::Entry& entry) {
+  const auto infos = owners.find(entry);
+  std::vector<Value> values;
+  if (const toml::table* range = entry.node->as_table()) {
+    const AxisRange bounds = read.range(*range, entry.name);
+    try {
+      values = expand_range(infos.front().second, bounds);
+    } catch (const InputError& e) {
+      read.fail(*entry.node, fmt::format("{}: {}", entry.name, e.what()));
+    }
+    for (Value& value : values)
+      value = owners.check(entry, *entry.node, value);
+    return values;
+  }
+  const toml::array* list = entry.node->as_array();
+  if (list == nullptr) {
+    read.fail(*entry.node,
+              fmt::format("axis {} is a list of values or a range {{ from, to, steps | log2 }}; a single value "
+                          "belongs under [run.fixed]",
+                          entry.name));
+  }
+  if (list->empty()) read.fail(*list, fmt::format("axis {} lists no value", entry.name));
+  for (const toml::node& node : *list) {
+    Value value = owners.check(entry, node, read.value(node, entry.name));
+    // Walked together with other axes, a value may well come again.
+    if (owners.block.combine == Combine::grid && std::find(values.begin(), values.end(), value) != values.end()) {
+      read.fail(node, fmt::format("axis {} lists {} twice", entry.name, to_text(value)));
+    }
+    values.push_back(std::move(value));
+  }
+  return values;
+}
+
+void read_parameters(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
+  const Owners owners{read, catalogue, block};
+  if (const toml::table* axes = read.table(table, "axes")) {
+    for (const SpecReader::Entry& entry : read.entries(*axes)) {
+      block.axes.push_back({entry.name, read_axis(read, owners, entry), entry.at});
+    }
+  }
+  if (const toml::table* fixed = read.table(table, "fixed")) {
+    for (const SpecReader::Entry& entry : read.entries(*fixed)) {
+      owners.find(entry);
+      const auto same = [&](const Axis& axis) { return axis.name == entry.name; };
+      if (std::any_of(block.axes.begin(), block.axes.end(), same)) {
+        read.fail(entry.at, fmt::format("{} is an axis of this block already", entry.name));
+      }
+      block.fixed.push_back({entry.name, owners.check(entry, *entry.node, read.value(*entry.node, entry.name))});
+    }
+  }
+  if (block.combine == Combine::zip) {
+    if (block.axes.empty()) read.fail(block.at, "combine = \"zip\" needs [run.axes]");
+    for (const Axis& axis : block.axes) {
+      if (axis.values.size() != block.axes.front().values.size()) {
+        read.fail(axis.at, fmt::format("a zip needs axes of equal length: {} has {} values, {} has {}", axis.name,
+                                       axis.values.size(), block.axes.front().name, block.axes.front().values.size()));
+      }
+    }
+  }
+}
+
+void read_places(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
+  for (const SpecReader::Text& technique : read.required_texts(table, "techniques", block.at)) {
+    read.at(*technique.node, [&] { catalogue.technique_parameters(technique.value); });
+    block.techniques.push_back(technique.value);
+  }
+  for (const SpecReader::Text& scene : read.required_texts(table, "scenes", block.at)) {
+    const std::string resolved = read.resolve_scene(scene.value);
+    read.at(*scene.node, [&] { catalogue.scene(resolved); });
+    block.scenes.push_back(resolved);
+  }
+  for (const SpecReader::Text& view : read.texts(table, "views", false)) {
+    for (const std::string& scene : block.scenes) {
+      read.one_of(*view.node, view.value, catalogue.scene(scene).views, fmt::format("view of scene {}", scene));
+    }
+    block.views.push_back(view.value);
+  }
+  for (const SpecReader::Text& size : read.texts(table, "sizes", false))
+    block.sizes.push_back(read.size(size));
+  if (block.sizes.empty()) block.sizes.push_back({});
+}
+
+RunBlock read_block(const SpecReader& read, const toml::table& table, const Catalogue& catalogue,
+                    const RunBlock& defaults) {
+  RunBlock block = defaults;
+  block.at = read.position(table);
+  read.allow(table,
+             {"name", "techniques", "scenes", "views", "sizes", "combine", "constraints", "metrics", "baseline", "axes",
+              "fixed", "timing", "reference"},
+             "run");
+  block.name = read.identifier(table, "name", block.at);
+  read_places(read, table, catalogue, block);
+  std::string combine = "grid";
+  if (read.text(table, "combine", combine)) {
+    read.one_of(*table.get("combine"), combine, {"grid", "zip"}, "combine");
+    block.combine = combine == "zip" ? Combine::zip : Combine::grid;
+  }
+  read_timing(read, table, block.timing);
+  read_reference(read, table, block.reference);
+  read_metrics(read, table, block.metrics);
+  read_parameters(read, table, catalogue, block);
+  for (const SpecReader::Text& text : read.texts(table, "constraints", true)) {
+    block.constraints.push_back({text.value, read.position(*text.node)});
+  }
+  read.boolean(table, "baseline", block.baseline);
+  if (block.baseline && !block.timing.enabled) {
+    read.fail(*table.get("baseline"), "the baseline is re-measured for its time; its block needs timing");
+  }
+  if (!block.timing.enabled && block.metrics.empty()) {
+    read.fail(block.at, fmt::format("block '{}' has neither timing nor metrics: nothing to measure", block.name));
+  }
+  return block;
+}
+
+}  // namespace
+
+Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& catalogue) {
+  if (text.size() > kMaxSpecBytes) throw InputError(fmt::format("{}: a spec may have {} bytes", source, kMaxSpecBytes));
+  toml::table root;
+  try {
+    root = toml::parse(text, source);
+  } catch (const toml::parse_error& e) {
+    throw InputError(
+        fmt::format("{}:{}:{}: {}", source, e.source().begin.line, e.source().begin.column, e.description()));
+  }
+  const SpecReader read(source);
+  Spec spec;
+  spec.source = source;
+  spec.text = text;
+  read.allow(root, {"name", "title", "description", "metrics", "timeout_s", "timing", "reference", "run"}, "the spec");
+  spec.name = read.identifier(root, "name", {1, 1});
+  read.text(root, "title", spec.title);
+  read.text(root, "description", spec.description);
+  read.real(root, "timeout_s", 0.1, 86'400, spec.timeout_s);
+
+  RunBlock defaults;
+  defaults.metrics = MetricSet(kDefaultMetrics).names();
+  read_metrics(read, root, defaults.metrics);
+  read_timing(read, root, defaults.timing);
+  read_reference(read, root, defaults.reference);
+
+  const toml::node* runs = root.get("run");
+  if (runs == nullptr) read.fail(Position{1, 1}, "the spec has no [[run]] block");
+  const toml::array* blocks = runs->as_array();
+  if (blocks == nullptr || blocks->empty() || !blocks->is_homogeneous(toml::node_type::table)) {
+    read.fail(*runs, "run is a list of tables: write [[run]]");
+  }
+  for (const toml::node& node : *blocks) {
+    RunBlock block = read_block(read, *node.as_table(), catalogue, defaults);
+    for (const RunBlock& other : spec.blocks) {
+      if (other.name == block.name) {
+        read.fail(*node.as_table()->get("name"), fmt::format("a second block named '{}'", block.name));
+      }
+      if (other.baseline && block.baseline) {
+        read.fail(*node.as_table()->get("baseline"), fmt::format("block '{}' is the baseline already", other.name));
+      }
+    }
+    spec.blocks.push_back(std::move(block));
+  }
+  return spec;
+}
+
+Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue) {
+  if (!path_or_name.ends_with(".toml")) {
+    const std::string resource = fmt::format("{}{}.toml", kPapers, path_or_name);
+    if (const auto text = find_resource(resource)) return parse_spec(*text, resource, catalogue);
+    const std::vector<std::string> names = list_specs();
+    const std::string near = nearest_name(path_or_name, names);
+    throw InputError(fmt::format("no spec named '{}'; {} (a file's name ends in .toml)", path_or_name,
+                                 near.empty() ? fmt::format("built in are: {}", fmt::join(names, ", "))
+                                              : fmt::format("did you mean '{}'?", near)));
+  }
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path_or_name, error)) {
+    throw InputError(fmt::format("{}: no such file", path_or_name));
+  }
+  if (std::filesystem::file_size(path_or_name, error) > kMaxSpecBytes) {
+    throw InputError(fmt::format("{}: a spec may have {} bytes", path_or_name, kMaxSpecBytes));
+  }
+  std::ifstream file(path_or_name, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) throw InputError(fmt::format("{}: cannot be read", path_or_name));
+  return parse_spec(text, path_or_name, catalogue);
+}
+
+std::vector<std::string> list_specs() {
+  std::vector<std::string> names;
+  for (const std::string& resource : list_resources(kPapers, ".toml")) {
+    names.push_back(resource.substr(kPapers.size(), resource.size() - kPapers.size() - 5));
+  }
+  return names;
+}
+
+}  // namespace pellucid::sweeps

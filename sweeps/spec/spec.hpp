@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/parameters.hpp"
+#include "sweeps/measure/reference_settings.hpp"
+#include "sweeps/spec/catalogue.hpp"
+
+/// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the catalogue.
+namespace pellucid::sweeps {
+
+/// A line and column of the spec, 1-based.
+struct Position {
+  unsigned line = 0;
+  unsigned column = 0;
+};
+
+/// One swept parameter: a technique's, `scene.…`, `frame.…` or `shadow.…`, with values of the parameter's own type.
+struct Axis {
+  std::string name;
+  std::vector<Value> values;
+  Position at;
+};
+
+struct FixedValue {
+  std::string name;
+  Value value;
+};
+
+struct Constraint {
+  std::string text;
+  Position at;
+};
+
+enum class Combine { grid, zip };
+
+/// When a point's timing ends.
+struct TimingLimits {
+  bool enabled = true;
+  int min_samples = 30;
+  int max_samples = 2000;
+  double max_seconds = 30;     ///< of sampling, warm-up apart
+  double relative_ci = 0.005;  ///< half-width of the 95 % interval of the median over the median
+};
+
+struct Size {
+  int width = 720;
+  int height = 540;
+};
+
+/// One `[[run]]`.
+struct RunBlock {
+  std::string name;
+  std::vector<std::string> techniques;
+  std::vector<std::string> scenes;
+  std::vector<std::string> views;  ///< empty: each scene's first
+  std::vector<Size> sizes;
+  Combine combine = Combine::grid;
+  std::vector<Axis> axes;
+  std::vector<FixedValue> fixed;
+  std::vector<Constraint> constraints;
+  std::vector<std::string> metrics;  ///< of metric_names() (metrics/metrics.hpp), in that order
+  bool baseline = false;             ///< its first point is re-measured during the sweep
+  TimingLimits timing;
+  ReferenceSettings reference;
+  Position at;
+};
+
+struct Spec {
+  std::string name;  ///< [a-z0-9_]+
+  std::string title;
+  std::string description;
+  std::string source;      ///< file name that errors start with
+  std::string text;        ///< as read
+  double timeout_s = 600;  ///< a point that takes longer is recorded as failed
+  std::vector<RunBlock> blocks;
+};
+
+/// Throws InputError "source:line:column: …" for the first thing wrong.
+Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& = installed_catalogue());
+
+/// A path ending in .toml, or the name of an embedded spec (sweeps/papers/NAME.toml).
+Spec load_spec(const std::string& path_or_name, const Catalogue& = installed_catalogue());
+
+/// Names of the embedded specs, sorted.
+std::vector<std::string> list_specs();
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "sweeps/spec/plan.hpp"
+
+/// What parent and worker say to each other, one JSON object a line.
+///
+///   worker → parent   {"type": "hello", "protocol": 1, "device": …, "driver": …, "clock": …}     once, when it can
+///   render parent → worker   {"type": "measure", "point": {…}, "references": FOLDER}                    a point, in
+///   full
+///                     {"type": "time", "point": {…}}                                             its frame time alone
+///   worker → parent   {"type": "progress", "phase": "reference", "share": 0.4}                   any number
+///                     {"type": "done", "id": …, "row": {…}, "frame_ms_samples": […]}
+///                     {"type": "failed", "id": …, "reason": …}
+///
+/// The worker ends when its input ends. What it prints on standard error is kept for the reason of a crash.
+namespace pellucid::sweeps {
+
+inline constexpr int kProtocol = 1;
+
+nlohmann::json point_to_json(const Point&);
+/// Throws RuntimeError when a field is missing or of another type.
+Point point_from_json(const nlohmann::json&);
+
+nlohmann::json value_to_json(const Value&);
+
+/// One line without the newline; text that is not UTF-8 is mended.
+std::string to_line(const nlohmann::json&);
+
+}  // namespace pellucid::sweeps
