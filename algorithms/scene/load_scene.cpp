@@ -25,26 +25,6 @@ std::vector<std::string> scene_resources() {
   return names;
 }
 
-std::string read_scene_file(const std::string& name) {
-  const fs::path path(name);
-  std::error_code error;
-  const auto refuse = [&](std::string_view reason) {
-    return InputError(fmt::format("cannot read scene '{}': {}", name, reason));
-  };
-  if (!fs::is_regular_file(path, error)) {
-    throw refuse(fs::exists(path, error) ? "not a regular file" : "No such file or directory");
-  }
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (!error && bytes > kMaxSceneBytes) {
-    throw refuse(fmt::format("{} bytes; a scene file has at most {}", bytes, kMaxSceneBytes));
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.is_open() || file.bad()) throw refuse(std::strerror(errno));
-  return text;
-}
-
 /// The resource of the scene called `name`.
 std::string find_scene(const std::string& name) {
   std::vector<std::string> known;
@@ -85,7 +65,7 @@ Scene load_scene(const std::string& name_or_path) {
   fs::path folder;
   if (name_or_path.ends_with(".toml")) {
     description->file.shown = name_or_path;
-    text = read_scene_file(name_or_path);
+    text = read_toml_text(name_or_path, "scene", kMaxSceneBytes);
     folder = fs::path(name_or_path).parent_path();
   } else {
     description->file.shown = find_scene(name_or_path);

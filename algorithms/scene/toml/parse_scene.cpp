@@ -10,14 +10,8 @@
 namespace pellucid {
 
 void parse_scene(std::string_view text, const std::filesystem::path& folder, SceneDescription& scene) {
-  toml::table document;
-  try {
-    document = toml::parse(text, scene.file.shown);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw scene.file.error({static_cast<int>(at.line), static_cast<int>(at.column)}, error.description());
-  }
-  TableReader root(scene.file, document, "", scene.targets);
+  const auto document = parse_toml(text, scene.file);
+  TableReader root(scene.file, *document, "", scene.targets);
   root.text("title", scene.title, Need::required);
   root.text("description", scene.description);
   root.text("stand_in", scene.stand_in);

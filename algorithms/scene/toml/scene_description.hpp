@@ -136,7 +136,7 @@ struct ParameterDescription {
 
 /// Deques, so that what parameters write never moves.
 struct SceneDescription {
-  SceneFile file;
+  TomlFile file;
   std::string title, description, stand_in;
   std::deque<MeshDescription> meshes;
   std::deque<MaterialDescription> materials;

@@ -45,7 +45,7 @@ void SceneSource::connect() {
 
 void SceneSource::connect(std::size_t index, const DriveTarget& target, const std::pair<std::string, Place>& drive) {
   const ParameterDescription& parameter = description_->parameters[index];
-  const SceneFile& file = description_->file;
+  const TomlFile& file = description_->file;
   const auto refuse = [&](std::string_view message) {
     throw file.error(drive.second, fmt::format("parameters.{}.drives: {}", parameter.info.name, message));
   };

@@ -1,7 +1,12 @@
 #include "algorithms/scene/toml/toml_reader.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -22,8 +27,33 @@ Place place_of(const toml::node& node) {
   return begin_of(node.source());
 }
 
-InputError SceneFile::error(Place place, std::string_view message) const {
+InputError TomlFile::error(Place place, std::string_view message) const {
   return InputError(fmt::format("{}:{}:{}: {}", shown, place.line, place.column, message));
+}
+
+std::string read_toml_text(const std::string& path, std::string_view what, std::uintmax_t most_bytes) {
+  std::error_code error;
+  const auto refuse = [&](std::string_view reason) {
+    return InputError(fmt::format("cannot read {} '{}': {}", what, path, reason));
+  };
+  if (!std::filesystem::is_regular_file(path, error))
+    throw refuse(std::filesystem::exists(path, error) ? "not a regular file" : "No such file or directory");
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (!error && bytes > most_bytes)
+    throw refuse(fmt::format("{} bytes; a {} file has at most {}", bytes, what, most_bytes));
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.is_open() || file.bad()) throw refuse(std::strerror(errno));
+  return text;
+}
+
+std::shared_ptr<const toml::table> parse_toml(std::string_view text, const TomlFile& file) {
+  try {
+    return std::make_shared<const toml::table>(toml::parse(text, file.shown));
+  } catch (const toml::parse_error& error) {
+    throw file.error(begin_of(error.source()), error.description());
+  }
 }
 
 std::string NumberRange::text() const {
@@ -278,9 +308,28 @@ std::optional<TableReader> TableReader::table(std::string_view key) {
   if (node == nullptr) return std::nullopt;
   const toml::table* table = node->as_table();
   if (table == nullptr) fail(place_of(*node), wrong_type(dotted(key), "a table", *node));
-  TableReader reader(*file_, *table, dotted(key), *targets_);
+  TableReader reader = inner(*table, dotted(key));
   reader.set_affected(affected_);
   return reader;
+}
+
+TableReader TableReader::inner(const toml::table& table, std::string path) const {
+  TableReader reader(*file_, table, std::move(path));
+  reader.targets_ = targets_;
+  return reader;
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::pair<Place, std::string>> found;
+  for (auto&& [key, node] : *table_)
+    found.emplace_back(begin_of(key.source()), key.str());
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first.line, a.first.column) < std::pair(b.first.line, b.first.column);
+  });
+  std::vector<std::string> keys;
+  for (auto& [place, key] : found)
+    keys.push_back(std::move(key));
+  return keys;
 }
 
 std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(std::string_view key) {
@@ -295,7 +344,7 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(std::
     }
     const toml::table* inner = node.as_table();
     if (inner == nullptr) fail(place_of(node), wrong_type(outer->dotted(name.str()), "a table", node));
-    result.emplace_back(name.str(), TableReader(*file_, *inner, outer->dotted(name.str()), *targets_));
+    result.emplace_back(name.str(), this->inner(*inner, outer->dotted(name.str())));
   }
   // toml++ sorts by name; the order of the file tells which view is the first.
   std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
@@ -315,7 +364,7 @@ std::vector<TableReader> TableReader::tables(std::string_view key, Need need) {
   for (const toml::node& element : *array) {
     const toml::table* inner = element.as_table();
     if (inner == nullptr) fail(place_of(element), wrong_type(dotted(key), "a list of tables", element));
-    result.emplace_back(*file_, *inner, fmt::format("{}[{}]", dotted(key), result.size()), *targets_);
+    result.push_back(this->inner(*inner, fmt::format("{}[{}]", dotted(key), result.size())));
   }
   return result;
 }

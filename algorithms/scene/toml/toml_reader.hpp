@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -18,11 +21,11 @@ class table;
 }  // namespace v3
 }  // namespace toml
 
-/// Reading a scene file key by key: each number is checked once, where it is read, and is from then on known by its
-/// dotted path to the scene's parameters. Every error is an InputError "file:line:column: message".
+/// Reading a TOML file key by key: each value is checked once, where it is read. In a scene a number is from then on
+/// known by its dotted path to the scene's parameters. Every error is an InputError "file:line:column: message".
 namespace pellucid {
 
-/// A place in the scene file, 1-based.
+/// A place in the file, 1-based.
 struct Place {
   int line = 0;
   int column = 0;
@@ -31,11 +34,16 @@ Place place_of(const toml::node&);
 /// What it is, for an error: "a table", "a string" and so on.
 std::string_view type_name(const toml::node&);
 
-/// The name of the scene file, as errors show it.
-struct SceneFile {
+/// The name of the file, as errors show it.
+struct TomlFile {
   std::string shown;
   InputError error(Place, std::string_view message) const;
 };
+
+/// The text of a regular file of at most so many bytes. Throws InputError "cannot read WHAT 'PATH': reason".
+std::string read_toml_text(const std::string& path, std::string_view what, std::uintmax_t most_bytes);
+/// Throws InputError with the place of what is no TOML.
+std::shared_ptr<const toml::table> parse_toml(std::string_view text, const TomlFile&);
 
 /// Inclusive, unless `above_min`.
 struct NumberRange {
@@ -89,8 +97,11 @@ enum class Need { optional, required };
 /// One table of the file. Keys that are never asked for are errors: call finish() at the end.
 class TableReader {
  public:
-  TableReader(const SceneFile& file, const toml::table& table, std::string path, std::vector<DriveTarget>& targets)
+  TableReader(const TomlFile& file, const toml::table& table, std::string path, std::vector<DriveTarget>& targets)
       : file_(&file), table_(&table), path_(std::move(path)), targets_(&targets) {}
+  /// Of a file whose numbers no parameter drives.
+  TableReader(const TomlFile& file, const toml::table& table, std::string path = "")
+      : file_(&file), table_(&table), path_(std::move(path)) {}
 
   /// What changes when a number read from now on changes; nothing: parameters cannot drive it.
   void set_affected(std::optional<Affected> affected) { affected_ = affected; }
@@ -117,12 +128,16 @@ class TableReader {
   void text(std::string_view key, std::string& value, Need = Need::optional);
   /// A text that is one of `choices`; returns its position.
   std::size_t choice(std::string_view key, std::initializer_list<std::string_view> choices, std::size_t otherwise);
-  std::vector<std::pair<std::string, Place>> texts(std::string_view key, Need);
+  std::vector<std::pair<std::string, Place>> texts(std::string_view key, Need = Need::optional);
+  /// The value itself, for what the calls above do not read; null when it is absent.
+  const toml::node* node(std::string_view key, Need need = Need::optional) { return find(key, need); }
+  /// Every key, in the order of the file.
+  std::vector<std::string> keys() const;
 
   std::optional<TableReader> table(std::string_view key);
   /// The tables in a table, named, in the order of the file.
   std::vector<std::pair<std::string, TableReader>> named_tables(std::string_view key);
-  std::vector<TableReader> tables(std::string_view key, Need);  ///< an array of tables
+  std::vector<TableReader> tables(std::string_view key, Need = Need::optional);  ///< an array of tables
 
   void require(std::string_view key);
   /// Not both.
@@ -138,16 +153,17 @@ class TableReader {
   std::string dotted(std::string_view key) const;
   const toml::node* find(std::string_view key, Need);
   double scalar(const toml::node&, const std::string& shown, NumberRange, bool integer) const;
+  TableReader inner(const toml::table& table, std::string path) const;
   void components(std::string_view key, double* values, std::size_t count, NumberRange, bool integer, bool one_for_all,
                   std::string_view names, Need);
   void components(const std::string& shown, const toml::node*, double* values, std::size_t count, NumberRange,
                   bool integer, bool one_for_all, std::string_view names);
   void add_target(std::string path, std::vector<double*> numbers, NumberRange, bool integer, const toml::node*);
 
-  const SceneFile* file_;
+  const TomlFile* file_;
   const toml::table* table_;
   std::string path_;
-  std::vector<DriveTarget>* targets_;
+  std::vector<DriveTarget>* targets_ = nullptr;
   std::optional<Affected> affected_;
   std::vector<std::string> asked_;
 };
