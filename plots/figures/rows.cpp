@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/technique.hpp"
+#include "algorithms/parameters.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/style.hpp"
 
@@ -18,23 +16,6 @@ namespace pellucid::plots {
 namespace {
 
 using nlohmann::json;
-
-std::string text_of(const json& row, std::string_view field) {
-  const auto found = row.find(std::string(field));
-  return found == row.end() ? std::string() : value_text(*found);
-}
-
-bool meets(const json& row, const Condition& condition) {
-  const auto found = row.find(condition.field);
-  if (found == row.end()) return false;
-  if (found->is_number()) {
-    double wanted = 0;
-    const char* const end = condition.value.data() + condition.value.size();
-    const auto [stopped, error] = std::from_chars(condition.value.data(), end, wanted);
-    return error == std::errc{} && stopped == end && found->get<double>() == wanted;
-  }
-  return value_text(*found) == condition.value;
-}
 
 void check_field(const std::vector<json>& rows, const std::string& field) {
   std::set<std::string> names;
@@ -54,7 +35,7 @@ void check_field(const std::vector<json>& rows, const std::string& field) {
 std::string listed(const std::vector<const json*>& rows, const std::string& field) {
   std::vector<std::string> values;
   for (const json* row : rows) {
-    const std::string value = text_of(*row, field);
+    const std::string value = field_text(*row, field);
     if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
   }
   constexpr std::size_t kMost = 8;
@@ -66,7 +47,7 @@ std::string listed(const std::vector<const json*>& rows, const std::string& fiel
 void check_one_machine(const std::vector<const json*>& rows) {
   for (const char* field : {"device", "driver"}) {
     for (const json* row : rows) {
-      if (text_of(*row, field) == text_of(*rows.front(), field)) continue;
+      if (field_text(*row, field) == field_text(*rows.front(), field)) continue;
       throw InputError(fmt::format("rows of more than one {} are never pooled: {}; choose with --where {}=…", field,
                                    listed(rows, field), field));
     }
@@ -82,28 +63,7 @@ bool is_timing(const std::string& field) {
   return field == "fps" || field.starts_with("frame_ms");
 }
 
-const ParameterTable* table_of(const std::string& technique) {
-  for (const TechniqueInfo& info : techniques()) {
-    if (info.name == technique) return &info.table();
-  }
-  return nullptr;
-}
-
 }  // namespace
-
-std::optional<double> number(const json& row, std::string_view field) {
-  const auto found = row.find(std::string(field));
-  if (found == row.end() || !found->is_number()) return std::nullopt;
-  const double value = found->get<double>();
-  if (!std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::string value_text(const json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  return value.dump();
-}
 
 Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> conditions,
                  std::span<const std::string> fields) {
@@ -139,12 +99,12 @@ Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> condi
     if (std::any_of(missing.begin(), missing.end(), [&](const auto& field) { return parameters.contains(field); })) {
       continue;
     }
-    if (row->contains("point") && !seen.insert(text_of(*row, "point")).second) continue;
-    if (text_of(*row, "status") == "failed")
+    if (row->contains("point") && !seen.insert(field_text(*row, "point")).second) continue;
+    if (field_text(*row, "status") == "failed")
       ++result.failed;
     else if (missing.empty())
       result.kept.push_back(row);
-    else if (text_of(*row, "timing") == "off" && std::all_of(missing.begin(), missing.end(), is_timing))
+    else if (field_text(*row, "timing") == "off" && std::all_of(missing.begin(), missing.end(), is_timing))
       ++result.untimed;
     else
       ++result.incomplete;
@@ -157,26 +117,9 @@ Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> condi
   }
   check_one_machine(result.kept);
   result.unconverged =
-      static_cast<std::size_t>(std::count_if(result.kept.begin(), result.kept.end(),
-                                             [](const json* row) { return text_of(*row, "timing") == "unconverged"; }));
-  return result;
-}
-
-std::vector<std::pair<std::string, std::string>> settings(const json& row) {
-  std::vector<std::pair<std::string, std::string>> result;
-  const std::string technique = text_of(row, "technique");
-  result.emplace_back("technique", technique);
-  for (const char* field : {"scene", "view"}) {
-    if (row.contains(field)) result.emplace_back(field, text_of(row, field));
-  }
-  if (row.contains("width") && row.contains("height")) {
-    result.emplace_back("size", fmt::format("{}×{}", text_of(row, "width"), text_of(row, "height")));
-  }
-  const ParameterTable* table = table_of(technique);
-  for (const auto& [name, value] : row.items()) {
-    const bool parameter = name.find('.') != std::string::npos || (table != nullptr && table->find(name) != nullptr);
-    if (parameter) result.emplace_back(name, value_text(value));
-  }
+      static_cast<std::size_t>(std::count_if(result.kept.begin(), result.kept.end(), [](const json* row) {
+        return field_text(*row, "timing") == "unconverged";
+      }));
   return result;
 }
 
@@ -188,7 +131,7 @@ class Variation {
  public:
   Variation(const Rows& rows, std::span<const std::string> own) {
     for (const json* row : rows.kept) {
-      const std::string technique = text_of(*row, "technique");
+      const std::string technique = field_text(*row, "technique");
       for (const auto& [name, value] : settings(*row)) {
         if (name == "technique" || std::find(own.begin(), own.end(), name) != own.end()) continue;
         Setting& setting = settings_[key(technique, name)];
@@ -245,12 +188,12 @@ std::vector<Group> group_rows(const Rows& rows, std::span<const std::string> own
   const Variation variation(rows, own);
   const bool by_technique = std::find(own.begin(), own.end(), "technique") == own.end();
   const bool one_technique = std::all_of(rows.kept.begin(), rows.kept.end(), [&](const json* row) {
-    return text_of(*row, "technique") == text_of(*rows.kept.front(), "technique");
+    return field_text(*row, "technique") == field_text(*rows.kept.front(), "technique");
   });
   std::vector<Group> groups;
   std::vector<std::string> keys;  // of the groups: every setting that divides, named in the label or not
   for (const json* row : rows.kept) {
-    const std::string technique = text_of(*row, "technique");
+    const std::string technique = field_text(*row, "technique");
     std::string key = by_technique ? technique : std::string();
     std::vector<std::string> parts;
     for (const auto& [name, value] : settings(*row)) {
@@ -285,7 +228,7 @@ void check_distinct(const std::vector<Group>& groups, std::span<const std::strin
     for (const json* row : group.rows) {
       std::vector<std::string> parts;
       for (const std::string& name : own) {
-        if (row->contains(name)) parts.push_back(fmt::format("{} = {}", name, text_of(*row, name)));
+        if (row->contains(name)) parts.push_back(fmt::format("{} = {}", name, field_text(*row, name)));
       }
       const std::string place = fmt::format("{}", fmt::join(parts, ", "));
       const auto [first, fresh] = seen.try_emplace(place, row);
@@ -293,7 +236,7 @@ void check_distinct(const std::vector<Group>& groups, std::span<const std::strin
       throw InputError(
           fmt::format("'{}' was measured more than once at {} (points {} and {}), and measurements are "
                       "never pooled; choose with --where sweep=…, block=… or point=…",
-                      group.label, place, text_of(*first->second, "point"), text_of(*row, "point")));
+                      group.label, place, field_text(*first->second, "point"), field_text(*row, "point")));
     }
   }
 }
@@ -301,9 +244,9 @@ void check_distinct(const std::vector<Group>& groups, std::span<const std::strin
 std::string provenance_note(const Rows& rows, bool timed) {
   std::vector<std::string> parts;
   const auto common = [&](const std::string& field) -> std::string {
-    const std::string first = text_of(*rows.kept.front(), field);
-    const bool all =
-        std::all_of(rows.kept.begin(), rows.kept.end(), [&](const json* row) { return text_of(*row, field) == first; });
+    const std::string first = field_text(*rows.kept.front(), field);
+    const bool all = std::all_of(rows.kept.begin(), rows.kept.end(),
+                                 [&](const json* row) { return field_text(*row, field) == first; });
     return all ? first : std::string();
   };
   if (const std::string scene = common("scene"); !scene.empty()) parts.push_back(scene);

@@ -10,8 +10,16 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "sweeps/store/rows.hpp"
+
 /// From the rows of a store to what a figure draws: chosen, checked, grouped.
 namespace pellucid::plots {
+
+using sweeps::Condition;
+using sweeps::field_text;
+using sweeps::number;
+using sweeps::settings;
+using sweeps::value_text;
 
 /// Rows that can be drawn, and how many could not.
 struct Rows {
@@ -22,25 +30,12 @@ struct Rows {
   std::size_t unconverged = 0;              ///< kept, but the frame time's interval is wider than asked for
 };
 
-/// name=value, compared as text, numbers by value.
-struct Condition {
-  std::string field, value;
-};
-
 /// The rows that meet every condition and have a number in each of `fields`. A point that stands in several blocks or
 /// specs counts once; one that lacks a parameter among `fields` is of another technique and is not counted. Throws
 /// InputError for a field that no row has (nearest name), for a condition that no row meets (with the values there
 /// are), and for rows of more than one device or driver.
 Rows choose_rows(const std::vector<nlohmann::json>& rows, std::span<const Condition> conditions,
                  std::span<const std::string> fields);
-
-/// A finite number; nothing when the field is absent, null or of another type.
-std::optional<double> number(const nlohmann::json& row, std::string_view field);
-/// "0.5", "true", "fog_forest".
-std::string value_text(const nlohmann::json& value);
-
-/// What was chosen for a point, as against measured: technique, scene, view, size ("720×540") and every parameter.
-std::vector<std::pair<std::string, std::string>> settings(const nlohmann::json& row);
 
 /// Rows that differ in nothing but the settings that a chart shows otherwise.
 struct Group {

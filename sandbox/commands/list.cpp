@@ -10,6 +10,7 @@
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/reproduce/papers.hpp"
+#include "sweeps/quantities/quantities.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -45,6 +46,28 @@ ordered_json papers_json() {
   return out;
 }
 
+ordered_json quantity_json(const sweeps::Quantity& q) {
+  ordered_json out{{"name", q.name},
+                   {"label", q.label},
+                   {"heading", q.heading},
+                   {"unit", q.unit},
+                   {"type", q.text ? "text" : "number"},
+                   {"digits", q.digits},
+                   {"better", sweeps::name(q.better)}};
+  if (!q.low.empty()) out["bounds"] = {q.low, q.high};
+  if (!q.interval.empty()) out["interval"] = q.interval;
+  if (!q.module.empty()) out["module"] = q.module;
+  out["doc"] = q.doc;
+  return out;
+}
+
+ordered_json quantities_json() {
+  ordered_json out = ordered_json::array();
+  for (const sweeps::Quantity& q : sweeps::quantities())
+    out.push_back(quantity_json(q));
+  return out;
+}
+
 void print_rows(std::string_view heading, const ordered_json& rows, const char* text_field) {
   fmt::print("{}\n", heading);
   for (const auto& row : rows) {
@@ -57,6 +80,7 @@ int list(const std::string& what, bool json) {
   if (what.empty() || what == "techniques") all["techniques"] = techniques_json();
   if (what.empty() || what == "scenes") all["scenes"] = scenes_json();
   if (what.empty() || what == "papers") all["papers"] = papers_json();
+  if (what == "quantities") all["quantities"] = quantities_json();
   if (json) {
     fmt::print("{}\n", (what.empty() ? all : all[what]).dump(2));
     return kDone;
@@ -64,6 +88,7 @@ int list(const std::string& what, bool json) {
   if (all.contains("techniques")) print_rows("techniques", all["techniques"], "doc");
   if (all.contains("scenes")) print_rows("scenes", all["scenes"], "title");
   if (all.contains("papers")) print_rows("papers", all["papers"], "title");
+  if (all.contains("quantities")) print_rows("quantities", all["quantities"], "doc");
   return kDone;
 }
 
@@ -111,7 +136,24 @@ void print_parameters(std::span<const ParameterInfo> infos) {
   }
 }
 
-// A technique by its name; else a scene by its, whose own parameters are shown.
+int describe_quantity(const sweeps::Quantity& q, bool json) {
+  if (json) {
+    fmt::print("{}\n", quantity_json(q).dump(2));
+    return kDone;
+  }
+  fmt::print("{}: {}\n{}\n", q.name, q.label, q.doc);
+  if (q.text) {
+    fmt::print("text\n");
+    return kDone;
+  }
+  fmt::print("unit: {}; {} significant digits; better: {}\n", q.unit.empty() ? "none" : q.unit, q.digits,
+             sweeps::name(q.better));
+  if (!q.low.empty()) fmt::print("{}: {} to {}\n", q.interval, q.low, q.high);
+  if (!q.module.empty()) fmt::print("declared by: {}\n", q.module);
+  return kDone;
+}
+
+// A technique, a scene or a quantity by its name; of the first two the parameters are shown.
 int describe(const std::string& wanted, bool json) {
   const auto scenes = list_scenes();
   const auto scene = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& s) { return s.name == wanted; });
@@ -141,6 +183,11 @@ int describe(const std::string& wanted, bool json) {
     print_parameters(loaded.parameters().infos());
     return kDone;
   }
+  const auto all = techniques();
+  const bool technique_named =
+      std::any_of(all.begin(), all.end(), [&](const TechniqueInfo& info) { return info.name == wanted; });
+  const sweeps::Quantity* quantity = technique_named ? nullptr : sweeps::find_quantity(wanted);
+  if (quantity != nullptr) return describe_quantity(*quantity, json);
   const TechniqueInfo& technique = find_technique(wanted);
   if (json) {
     fmt::print("{}\n", ordered_json{{"name", technique.name},
@@ -188,17 +235,18 @@ void add_list(CLI::App& root, std::vector<Command>& commands) {
   };
   auto options = std::make_shared<Options>();
 
-  CLI::App* list_app = root.add_subcommand("list", "List techniques, scenes and papers");
-  list_app->add_option("what", options->what, "techniques, scenes or papers; all without it")
-      ->check(CLI::IsMember({"techniques", "scenes", "papers"}));
+  CLI::App* list_app = root.add_subcommand("list", "List techniques, scenes, papers and quantities");
+  list_app->add_option("what", options->what, "techniques, scenes, papers or quantities; the first three without it")
+      ->check(CLI::IsMember({"techniques", "scenes", "papers", "quantities"}));
   list_app->add_flag("--json", options->json, "Print JSON");
   list_app->footer("Example: pellucid list scenes");
   commands.push_back({list_app, [options] { return list(options->what, options->json); }});
 
-  CLI::App* describe_app = root.add_subcommand("describe", "Show the parameters of a technique, or of a scene");
-  describe_app->add_option("name", options->what, "A technique or a scene")->required();
+  CLI::App* describe_app =
+      root.add_subcommand("describe", "Show the parameters of a technique or a scene, or explain a quantity");
+  describe_app->add_option("name", options->what, "A technique, a scene or a quantity")->required();
   describe_app->add_flag("--json", options->json, "Print JSON");
-  describe_app->footer("Example: pellucid describe sampling_hulls");
+  describe_app->footer("Examples:\n  pellucid describe sampling_hulls\n  pellucid describe flip_mean");
   commands.push_back({describe_app, [options] { return describe(options->what, options->json); }});
 
   CLI::App* devices_app = root.add_subcommand("devices", "List the devices that can render");

@@ -21,20 +21,6 @@ namespace {
 using nlohmann::json;
 using Rows = std::vector<const json*>;
 
-/// How errors and notes call the machine of a row; empty for a point that failed before its worker said hello.
-std::string machine(const json& row) {
-  const std::string device = text(row, "device");
-  return device.empty() ? "" : fmt::format("{}, {}", device, text(row, "driver"));
-}
-
-std::set<std::string> machines(const Rows& rows) {
-  std::set<std::string> found;
-  for (const json* row : rows) {
-    if (const std::string name = machine(*row); !name.empty()) found.insert(name);
-  }
-  return found;
-}
-
 Rows of_device(const TableInfo& info, const Rows& rows, std::string_view device) {
   Rows kept;
   bool any = false;
@@ -51,15 +37,6 @@ Rows of_device(const TableInfo& info, const Rows& rows, std::string_view device)
   return kept;
 }
 
-/// The values of a text field over the rows, each once, sorted.
-std::set<std::string> distinct(const Rows& rows, const char* field) {
-  std::set<std::string> values;
-  for (const json* row : rows) {
-    if (const std::string value = text(*row, field); !value.empty()) values.insert(value);
-  }
-  return values;
-}
-
 /// What a scene file says that it stands in for; empty for a scene that is not built in.
 std::string stand_in(const std::string& scene) {
   for (const SceneInfo& info : list_scenes()) {
@@ -69,16 +46,6 @@ std::string stand_in(const std::string& scene) {
     return file["stand_in"].value_or(std::string());
   }
   return "";
-}
-
-/// The first field in which two rows of one place differ, with both values: what the reader should fix.
-std::string difference(const json& a, const json& b) {
-  for (const char* field : {"scene", "view", "width", "height", "block"}) {
-    if (a.contains(field) && b.contains(field) && a.at(field) != b.at(field)) {
-      return fmt::format("{} is {} in one and {} in the other", field, a.at(field).dump(), b.at(field).dump());
-    }
-  }
-  return fmt::format("points {} and {}", text(a, "point"), text(b, "point"));
 }
 
 std::string clock_text(const std::string& clock) {
@@ -100,19 +67,6 @@ std::string sizes_text(const Rows& rows) {
   return fmt::format("{}", fmt::join(sizes, " and "));
 }
 
-/// Smallest and largest of a field.
-std::optional<std::pair<double, double>> extent(const Rows& rows, const char* field) {
-  std::optional<std::pair<double, double>> result;
-  for (const json* row : rows) {
-    const auto value = number(*row, field);
-    if (!value) continue;
-    if (!result) result = {*value, *value};
-    result->first = std::min(result->first, *value);
-    result->second = std::max(result->second, *value);
-  }
-  return result;
-}
-
 void note_commit(const Rows& rows, std::vector<std::string>& notes) {
   std::vector<std::string> commits;
   for (const std::string& commit : distinct(rows, "commit")) {
@@ -129,18 +83,8 @@ void note_commit(const Rows& rows, std::vector<std::string>& notes) {
 }  // namespace
 
 ChosenRows choose_rows(const TableInfo& info, const std::vector<json>& rows, std::string_view device) {
-  const std::string preview = info.spec + "_preview";
-  Rows full;
-  Rows quick;
-  for (const json& row : rows) {
-    const std::string sweep = text(row, "sweep");
-    if (sweep == info.spec) full.push_back(&row);
-    if (sweep == preview) quick.push_back(&row);
-  }
-  ChosenRows chosen;
-  if (full.empty() && quick.empty()) return chosen;
-  chosen.sweep = full.empty() ? preview : info.spec;
-  chosen.rows = full.empty() ? quick : full;
+  ChosenRows chosen = rows_of_sweep(rows, info.spec);
+  if (chosen.rows.empty()) return chosen;
   if (!device.empty()) chosen.rows = of_device(info, chosen.rows, device);
   if (const auto names = machines(chosen.rows); names.size() > 1) {
     throw InputError(
@@ -203,32 +147,6 @@ ChosenRows rows_of_blocks(const ChosenRows& chosen, const std::vector<std::strin
       out.rows.push_back(row);
   }
   return out;
-}
-
-std::optional<double> number(const json& row, const char* field) {
-  const auto found = row.find(field);
-  if (found == row.end() || !found->is_number()) return std::nullopt;
-  const double value = found->get<double>();
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-std::string text(const json& row, const char* field) {
-  const auto found = row.find(field);
-  return found != row.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-std::string outcome(const json* row) {
-  if (row == nullptr) return "missing";
-  if (text(*row, "status") == "failed") return "failed";
-  const std::string timing = text(*row, "timing");
-  return timing == "converged" || timing == "unconverged" ? timing : "untimed";
-}
-
-std::string significant(double value, int digits) {
-  if (value == 0) return "0";
-  const double magnitude = std::floor(std::log10(std::abs(value)));
-  if (magnitude < -4 || magnitude >= 7) return fmt::format("{:.{}e}", value, digits - 1);
-  return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - static_cast<int>(magnitude)));
 }
 
 std::vector<std::string> provenance_notes(const TableInfo& info, const ChosenRows& chosen) {

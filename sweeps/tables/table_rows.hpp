@@ -7,16 +7,14 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "sweeps/store/rows.hpp"
 #include "sweeps/tables/tables.hpp"
 
 /// What every table does with the rows of a store before it fills its own places. For the tables' own files.
 namespace pellucid::sweeps {
 
 /// The rows that a table may use: of one sweep, one device and one driver, each measurement once.
-struct ChosenRows {
-  std::string sweep;  ///< the table's spec or its preview; empty without rows
-  std::vector<const nlohmann::json*> rows;
-};
+using ChosenRows = SweepRows;
 
 /// See make_table.
 ChosenRows choose_rows(const TableInfo&, const std::vector<nlohmann::json>& rows, std::string_view device);
@@ -30,16 +28,6 @@ const nlohmann::json* find_row_of(const ChosenRows&, std::string_view block,
                                   const std::vector<std::pair<std::string, Value>>& values);
 /// The rows of the blocks whose names begin with one of these.
 ChosenRows rows_of_blocks(const ChosenRows&, const std::vector<std::string>& prefixes);
-
-/// A field that is a finite number.
-std::optional<double> number(const nlohmann::json& row, const char* field);
-/// A field that is text; empty when it is missing.
-std::string text(const nlohmann::json& row, const char* field);
-/// "converged", "unconverged", "untimed", "failed", or "missing" for no row.
-std::string outcome(const nlohmann::json* row);
-
-/// So many significant digits, without an exponent between 1e-4 and 1e7.
-std::string significant(double value, int digits);
 
 /// Where the used rows come from: device, driver, size, clock, scene and what stands in, frames, commit, drift.
 std::vector<std::string> provenance_notes(const TableInfo&, const ChosenRows&);

@@ -61,15 +61,15 @@ TEST(Plan, WrongConstraintsNameThePlace) {
   const auto error = [](const std::string& constraint) {
     return input_error([&] { plan_of(std::string(kHead) + "constraints = [\"1 < 2\", \"" + constraint + "\"]\n"); });
   };
-  EXPECT_EQ(error("hull <= 3"), "s.toml:6:25: constraint 'hull <= 3': unknown name 'hull'; did you mean 'hulls'?");
+  EXPECT_EQ(error("hull <= 3"), "s.toml:6:25: expression 'hull <= 3': unknown name 'hull'; did you mean 'hulls'?");
   EXPECT_EQ(error("hulls * 3"),
             "s.toml:6:25: constraint 'hulls * 3' gives 12, neither true nor false; compare with <=, <, ==, !=, >, >=");
-  EXPECT_EQ(error("hulls = 3"), "s.toml:6:25: constraint 'hulls = 3': '=' assigns; compare with '=='");
+  EXPECT_EQ(error("hulls = 3"), "s.toml:6:25: expression 'hulls = 3': '=' assigns; compare with '=='");
   EXPECT_TRUE(error("0 / 0 * hulls").starts_with("s.toml:6:25: constraint '0 / 0 * hulls' gives nan,"))
       << error("0 / 0 * hulls");
-  EXPECT_TRUE(error("hulls < ").starts_with("s.toml:6:25: constraint 'hulls < ': ")) << error("hulls < ");
-  EXPECT_EQ(error("hulls < 3, 1 < 2"), "s.toml:6:25: constraint 'hulls < 3, 1 < 2': more than one expression");
-  EXPECT_TRUE(error("format == 1").starts_with("s.toml:6:25: constraint 'format == 1': unknown name 'fo"))
+  EXPECT_TRUE(error("hulls < ").starts_with("s.toml:6:25: expression 'hulls < ': ")) << error("hulls < ");
+  EXPECT_EQ(error("hulls < 3, 1 < 2"), "s.toml:6:25: expression 'hulls < 3, 1 < 2': more than one expression");
+  EXPECT_TRUE(error("format == 1").starts_with("s.toml:6:25: expression 'format == 1': unknown name 'fo"))
       << error("format == 1");
   EXPECT_EQ(error("hulls > 99"), "s.toml:6:16: the constraints leave no point in block 'r'");
 }
