@@ -1,4 +1,4 @@
-// Scene-linear colour through OpenColorIO's generated function, whose text gl/display_gpu.cpp appends to this file.
+// Scene-linear colour through OpenColorIO's generated function, whose text gl/display/display_gpu.cpp appends to this file.
 layout(binding = 0) uniform sampler2D source;
 uniform float gain;
 
@@ -11,4 +11,4 @@ void main() {
   color = vec4(ocio_display(vec4(gain * texture(source, uv).rgb, 1.0)).rgb, 1.0);
 }
 
-#include "gl/lut_sampling.glsl"
+#include "gl/display/lut_sampling.glsl"

@@ -1,6 +1,10 @@
-#include "gl/display_gpu.hpp"
+#include "gl/display/display_gpu.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -130,12 +134,12 @@ DisplayProgram::DisplayProgram(const OCIO::ConstGPUProcessorRcPtr& processor) {
     samplers.emplace_back(sampler);
   }
 
-  ExpandedSource fragment = expand_includes("gl/display.frag.glsl", {});
+  ExpandedSource fragment = expand_includes("gl/display/display.frag.glsl", {});
   // A LUT with nearest look-up needs the texture unit's own filter.
-  if (all_smooth) append(fragment, "gl/display_gpu.cpp", "#define texture lut_texture\n");
+  if (all_smooth) append(fragment, "gl/display/display_gpu.cpp", "#define texture lut_texture\n");
   append(fragment, "OpenColorIO's shader", desc->getShaderText());
   program_ = Handle<delete_program>(link_program(
-      "display transform", {{.type = GL_VERTEX_SHADER, .source = expand_includes("gl/display.vert.glsl", {})},
+      "display transform", {{.type = GL_VERTEX_SHADER, .source = expand_includes("gl/display/display.vert.glsl", {})},
                             {.type = GL_FRAGMENT_SHADER, .source = std::move(fragment)}}));
   gain_ = glGetUniformLocation(program_.id(), "gain");
   for (std::size_t i = 0; i < samplers.size(); ++i)

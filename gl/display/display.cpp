@@ -1,16 +1,20 @@
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
 
-#include "gl/display_config.hpp"
-#include "gl/display_gpu.hpp"
+#include "gl/display/display_config.hpp"
+#include "gl/display/display_gpu.hpp"
 #include "gl/error.hpp"
 
 namespace OCIO = OCIO_NAMESPACE;
