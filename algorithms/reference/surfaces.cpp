@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
@@ -15,9 +16,9 @@
 #include <tbb/parallel_for.h>
 
 #include "algorithms/reference/geometry.hpp"
-#include "algorithms/reference/photon_map.hpp"
-#include "algorithms/reference/photon_source.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photon_map.hpp"
+#include "algorithms/reference/photons/photon_source.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "algorithms/reference/pixel_samples.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"

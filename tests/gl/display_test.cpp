@@ -1,10 +1,17 @@
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "gl/display_config.hpp"
+#include "gl/display/display_config.hpp"
 #include "tests/gl/gl_fixture.hpp"
 
 namespace pellucid::gl::test {

@@ -1,4 +1,4 @@
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include "algorithms/reference/geometry.hpp"
-#include "algorithms/reference/photon_source.hpp"
+#include "algorithms/reference/photons/photon_source.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/scene/shapes/bounds.hpp"
 #include "algorithms/scene/shapes/noise.hpp"

@@ -1,8 +1,9 @@
-#include "algorithms/reference/photon_map.hpp"
+#include "algorithms/reference/photons/photon_map.hpp"
 
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 

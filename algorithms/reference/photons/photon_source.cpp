@@ -1,7 +1,8 @@
-#include "algorithms/reference/photon_source.hpp"
+#include "algorithms/reference/photons/photon_source.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 

@@ -1,8 +1,9 @@
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {
