@@ -1,22 +1,23 @@
 #include "algorithms/render_session.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <limits>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid {
 namespace {
-
-constexpr std::string_view kScenePrefix = "scene.";
-constexpr std::string_view kFramePrefix = "frame.";
-constexpr std::string_view kShadowPrefix = "shadow.";
 
 nlohmann::json to_json(const Value& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
@@ -79,19 +80,17 @@ struct RenderSession::State {
   State(Scene loaded, std::string_view technique_name)
       : scene(std::move(loaded)), info(&find_technique(technique_name)), technique(info->make()), forward(scene) {}
 
-  /// The table that `name` belongs to, and `name` without its prefix.
-  std::pair<ParameterRef, std::string> owner(std::string_view& name) {
-    if (name.starts_with(kScenePrefix)) {
-      name.remove_prefix(kScenePrefix.size());
-      return {scene.parameters(), "scene " + scene.name};
-    }
-    if (name.starts_with(kFramePrefix)) {
-      name.remove_prefix(kFramePrefix.size());
-      return {bind_parameters(frame), "frame"};
-    }
-    if (name.starts_with(kShadowPrefix)) {
-      name.remove_prefix(kShadowPrefix.size());
-      return {bind_parameters(shadow), "shadow"};
+  /// An owner's table, and its name in messages.
+  std::pair<ParameterRef, std::string> table_of(ParameterOwner owner) {
+    switch (owner) {
+      case ParameterOwner::scene:
+        return {scene.parameters(), "scene " + scene.name};
+      case ParameterOwner::frame:
+        return {bind_parameters(frame), "frame"};
+      case ParameterOwner::shadow:
+        return {bind_parameters(shadow), "shadow"};
+      case ParameterOwner::technique:
+        break;
     }
     return {technique->parameters(), std::string(info->name)};
   }
@@ -169,9 +168,10 @@ RenderSession::RenderSession(RenderSession&&) noexcept = default;
 RenderSession& RenderSession::operator=(RenderSession&&) noexcept = default;
 
 Change RenderSession::assign(std::string_view name, const Value& value) {
-  const auto [table, owner] = state_->owner(name);
-  const bool of_scene = table.object == &state_->scene;
-  const Change change = table.assign(name, value, owner);
+  const ParameterName routed = route(name);
+  const auto [table, owner] = state_->table_of(routed.owner);
+  const bool of_scene = routed.owner == ParameterOwner::scene;
+  const Change change = table.assign(routed.local, value, owner);
   if (change == Change::precompute) {
     state_->prepared = false;
     state_->meshes_changed = state_->meshes_changed || of_scene;
@@ -182,23 +182,21 @@ Change RenderSession::assign(std::string_view name, const Value& value) {
 }
 
 Change RenderSession::assign_text(std::string_view name, std::string_view text) {
-  std::string_view local = name;
-  const auto [table, owner] = state_->owner(local);
-  const ParameterInfo* info = table.table->find(local);
-  if (info == nullptr) throw unknown_parameter(local, owner, table.infos());
+  const ParameterName routed = route(name);
+  const auto [table, owner] = state_->table_of(routed.owner);
+  const ParameterInfo* info = table.table->find(routed.local);
+  if (info == nullptr) throw unknown_parameter(routed.local, owner, table.infos());
   return assign(name, parse_value(*info, text, owner));
 }
 
 nlohmann::json RenderSession::parameters() const {
   nlohmann::json all = nlohmann::json::object();
-  auto add = [&](std::string_view prefix, const ParameterRef& table) {
+  for (const ParameterOwner owner :
+       {ParameterOwner::technique, ParameterOwner::scene, ParameterOwner::frame, ParameterOwner::shadow}) {
+    const ParameterRef table = state_->table_of(owner).first;
     for (const ParameterInfo& info : table.infos())
-      all[std::string(prefix) + info.name] = to_json(table.get(info.name));
-  };
-  add("", state_->technique->parameters());
-  add(kScenePrefix, state_->scene.parameters());
-  add(kFramePrefix, bind_parameters(state_->frame));
-  add(kShadowPrefix, bind_parameters(state_->shadow));
+      all[full_name(owner, info.name)] = to_json(table.get(info.name));
+  }
   return all;
 }
 

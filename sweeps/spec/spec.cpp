@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
@@ -100,7 +102,7 @@ struct Owners {
   };
   std::vector<Owner> owners_of(const std::string& name) const {
     std::vector<Owner> owners;
-    if (name.starts_with("scene.")) {
+    if (route(name).owner == ParameterOwner::scene) {
       for (const std::string& scene : block.scenes)
         owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
     } else if (const auto common = std::find_if(

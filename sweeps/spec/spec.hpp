@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "algorithms/parameters.hpp"
-#include "sweeps/measure/reference_settings.hpp"
 #include "sweeps/spec/catalogue.hpp"
+#include "sweeps/spec/reference_settings.hpp"
 
 /// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the catalogue.
 namespace pellucid::sweeps {

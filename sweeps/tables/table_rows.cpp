@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -13,7 +14,7 @@
 #include "algorithms/scene/scene.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
+#include "sweeps/spec/point_json.hpp"
 
 namespace pellucid::sweeps {
 namespace {

@@ -1,5 +1,10 @@
 // A paper as data: its head, the names of its entries, the quantities, and what mistakes say.
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

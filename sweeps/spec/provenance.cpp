@@ -1,4 +1,4 @@
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 #include <chrono>
 #include <ctime>

@@ -1,7 +1,10 @@
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

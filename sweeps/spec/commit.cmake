@@ -15,7 +15,7 @@ if(GIT)
   endif()
 endif()
 file(CONFIGURE OUTPUT ${OUT} @ONLY CONTENT [[
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sweeps {
 

@@ -1,6 +1,7 @@
-#include "sweeps/measure/reference_settings.hpp"
+#include "sweeps/spec/reference_settings.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
