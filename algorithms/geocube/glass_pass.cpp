@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include "algorithms/raster/mirror.hpp"
 #include "algorithms/raster/pixel_area.hpp"
@@ -75,7 +77,7 @@ FetchCounts GlassPass::count_fetches(const Scene& scene, const Camera& camera, c
       parameters_.layers > 1)
     throw InputError("bench: the bare shader of geocube is of functions = evaluated, stage = fragment and layers = 1");
   gl::Defines defines = defines_;
-  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/shaders/bench/bare_glass.frag.glsl"}, defines);
+  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/geocube/bench/bare_glass.frag.glsl"}, defines);
   defines.emplace_back("COUNT", "1");
   const gl::Program count("geocube counts", {kFullscreen, kGlass}, defines);
   forward.bind_environment(count);
