@@ -1,12 +1,12 @@
 #include "sandbox/commands/frame_options.hpp"
 
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
 
 using nlohmann::ordered_json;
 
-void add_frame_options(CLI::App& app, FrameOptions& options) {
+void add_frame_options(cli::App& app, FrameOptions& options) {
   app.add_option("scene", options.scene, "A scene's name (pellucid list scenes) or a .toml file")->required();
   app.add_option("-s,--set", options.settings, "name=value of a parameter, scene.name for the scene's own; repeatable")
       ->allow_extra_args(false);

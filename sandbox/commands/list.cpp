@@ -1,5 +1,13 @@
 // pellucid list, describe, devices.
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -69,10 +77,12 @@ ordered_json quantities_json() {
 }
 
 void print_rows(std::string_view heading, const ordered_json& rows, const char* text_field) {
+  std::size_t width = 20;
+  for (const auto& row : rows)
+    width = std::max(width, row.at("name").get<std::string>().size());
   fmt::print("{}\n", heading);
-  for (const auto& row : rows) {
-    fmt::print("  {:<20} {}\n", row.at("name").get<std::string>(), row.at(text_field).get<std::string>());
-  }
+  for (const auto& row : rows)
+    fmt::print("  {:<{}} {}\n", row.at("name").get<std::string>(), width, row.at(text_field).get<std::string>());
 }
 
 int list(const std::string& what, bool json) {
@@ -129,9 +139,12 @@ std::string range_text(const ParameterInfo& p) {
 }
 
 void print_parameters(std::span<const ParameterInfo> infos) {
+  std::size_t width = 14;
+  for (const ParameterInfo& p : infos)
+    width = std::max(width, p.name.size());
   for (const ParameterInfo& p : infos) {
-    fmt::print("  {:<14} {}{}\n", p.name, p.symbol.empty() ? "" : p.symbol + ": ", p.doc);
-    fmt::print("  {:<14}   {} in {}, default {}; {}; a change costs: {}\n", "", name(p.type), range_text(p),
+    fmt::print("  {:<{}} {}{}\n", p.name, width, p.symbol.empty() ? "" : p.symbol + ": ", p.doc);
+    fmt::print("  {:<{}}   {} in {} (default: {}); {}; a change costs: {}\n", "", width, name(p.type), range_text(p),
                to_text(p.default_value), p.cite, name(p.when));
   }
 }
@@ -228,28 +241,28 @@ int devices(bool json) {
 
 }  // namespace
 
-void add_list(CLI::App& root, std::vector<Command>& commands) {
+void add_list(cli::App& root, std::vector<Command>& commands) {
   struct Options {
     std::string what;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
 
-  CLI::App* list_app = root.add_subcommand("list", "List techniques, scenes, papers and quantities");
+  cli::App* list_app = root.add_subcommand("list", "List techniques, scenes, papers and quantities");
   list_app->add_option("what", options->what, "techniques, scenes, papers or quantities; the first three without it")
-      ->check(CLI::IsMember({"techniques", "scenes", "papers", "quantities"}));
+      ->check(cli::IsMember({"techniques", "scenes", "papers", "quantities"}));
   list_app->add_flag("--json", options->json, "Print JSON");
   list_app->footer("Example: pellucid list scenes");
   commands.push_back({list_app, [options] { return list(options->what, options->json); }});
 
-  CLI::App* describe_app =
+  cli::App* describe_app =
       root.add_subcommand("describe", "Show the parameters of a technique or a scene, or explain a quantity");
   describe_app->add_option("name", options->what, "A technique, a scene or a quantity")->required();
   describe_app->add_flag("--json", options->json, "Print JSON");
   describe_app->footer("Examples:\n  pellucid describe sampling_hulls\n  pellucid describe flip_mean");
   commands.push_back({describe_app, [options] { return describe(options->what, options->json); }});
 
-  CLI::App* devices_app = root.add_subcommand("devices", "List the devices that can render");
+  cli::App* devices_app = root.add_subcommand("devices", "List the devices that can render");
   devices_app->add_flag("--json", options->json, "Print JSON");
   devices_app->footer(
       "Example: pellucid devices --json\nThe number is what --device takes; without it the first device is used.");

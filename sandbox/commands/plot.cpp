@@ -1,5 +1,6 @@
 // pellucid plot.
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -13,7 +14,7 @@
 #include "plots/charts/chart.hpp"
 #include "plots/figures/figures.hpp"
 #include "plots/figures/row_chart.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/store/store.hpp"
 
@@ -98,9 +99,9 @@ int plot(PlotArguments arguments) {
 
 }  // namespace
 
-void add_plot(CLI::App& root, std::vector<Command>& commands) {
+void add_plot(cli::App& root, std::vector<Command>& commands) {
   auto arguments = std::make_shared<PlotArguments>();
-  CLI::App* app = root.add_subcommand("plot", "Draw a named figure, or any two fields of a store, as SVG, PNG or PDF");
+  cli::App* app = root.add_subcommand("plot", "Draw a named figure, or any two fields of a store, as SVG, PNG or PDF");
   app->add_option("what", arguments->what, "a store S.db, or the name of a figure (see --list)");
   app->add_option("--store", arguments->store, "the store that a named figure is drawn from");
   app->add_option("-o,--output", arguments->output, "file to write: .svg, .png or .pdf");

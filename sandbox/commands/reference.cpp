@@ -1,15 +1,20 @@
 // pellucid reference.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/shadow_maps.hpp"
 #include "algorithms/render_session.hpp"
 #include "gl/context.hpp"
@@ -18,7 +23,7 @@
 #include "sandbox/commands/scene_facts.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/metrics/metrics.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
+#include "sweeps/spec/point_json.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -61,11 +66,12 @@ std::map<std::string, Value> reference_parameters(const Options& options, Scene&
   };
   for (const std::string& setting : options.settings) {
     const auto [name, value] = parse_assignment(setting);
-    if (name.starts_with("scene.")) {
-      parse(name, name.substr(6), value, "scene " + scene.name, scene.parameters().infos());
-      scene.parameters().assign(name.substr(6), out[name], "scene " + scene.name);
-    } else if (draws && name.starts_with("shadow.")) {
-      parse(name, name.substr(7), value, "shadow", parameter_table<ShadowSettings>().infos());
+    const ParameterName routed = route(name);
+    if (routed.owner == ParameterOwner::scene) {
+      parse(name, routed.local, value, "scene " + scene.name, scene.parameters().infos());
+      scene.parameters().assign(routed.local, out[name], "scene " + scene.name);
+    } else if (draws && routed.owner == ParameterOwner::shadow) {
+      parse(name, routed.local, value, "shadow", parameter_table<ShadowSettings>().infos());
     } else {
       throw InputError(fmt::format("-s {}: a reference has no technique, so only scene. parameters can be set{}",
                                    setting,
@@ -73,7 +79,7 @@ std::map<std::string, Value> reference_parameters(const Options& options, Scene&
     }
   }
   for (const ParameterInfo& info : scene.parameters().infos())
-    out["scene." + info.name] = scene.parameters().get(info.name);
+    out[full_name(ParameterOwner::scene, info.name)] = scene.parameters().get(info.name);
   return out;
 }
 
@@ -131,7 +137,7 @@ int reference(const Options& options) {
     context.emplace(gl::ContextOptions{.device = options.device});
     session.emplace(std::move(loaded), techniques().front().name, camera.view.name, size.width, size.height);
     for (const auto& [name, value] : parameters) {
-      if (name.starts_with("shadow.")) session->assign(name, value);
+      if (route(name).owner == ParameterOwner::shadow) session->assign(name, value);
     }
     surfaces = sweeps::reference_surfaces(*session, settings);
     if (of_slices)
@@ -225,62 +231,63 @@ int reference(const Options& options) {
   return kDone;
 }
 
-void add_rays(CLI::App& app, SurfaceOptions& rays) {
+void add_rays(cli::App& app, SurfaceOptions& rays) {
   app.add_option("--samples", rays.samples,
-                 "Rays a pixel, stratified over its square; 1 is its centre. The standard error is stated")
-      ->check(CLI::Range(1, 65536))
+                 "Rays per pixel, stratified over its square; 1 is its centre. The standard error is stated")
+      ->check(cli::Range(1, 65536))
       ->capture_default_str();
   app.add_option("--reflections", rays.reflections,
                  "Most reflections inside a dielectric; light that needs more is dark")
-      ->check(CLI::Range(0, 1024))
+      ->check(cli::Range(0, 1024))
       ->capture_default_str();
   app.add_option("--cut", rays.cut, "Share of a pixel's light below which a branch at an interface is left out")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(cli::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("--caustics", rays.caustics, "Light that reaches surfaces through objects, by photons");
-  app.add_option("--photons", rays.photons, "Of --caustics, for each light that casts shadows and each object")
-      ->check(CLI::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))
+  app.add_option("--photons", rays.photons,
+                 "Photons with --caustics, for each light that casts shadows and each object")
+      ->check(cli::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))
       ->capture_default_str();
   app.add_option("--caustic-radius", rays.caustic_radius_m,
                  "Radius [m] over which a photon's light is spread; 0: 1 % of the largest object's")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(cli::Range(0.0, 1e6))
       ->capture_default_str();
 }
 
 }  // namespace
 
-void add_reference(CLI::App& root, std::vector<Command>& commands) {
+void add_reference(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("reference", "Compute the ground truth of a scene on the CPU");
+  cli::App* app = root.add_subcommand("reference", "Compute the ground truth of a scene on the CPU");
   add_frame_options(*app, *options);
   app->add_option(
          "--surfaces", options->surfaces,
          "rays: surfaces traced with Embree; raster: from the forward pass, so that silhouettes are the same as in a "
          "rendering, with exact shadows; forward: with its shadow maps too, so that a metric sees the medium alone")
-      ->check(CLI::IsMember({"rays", "raster", "forward"}))
+      ->check(cli::IsMember({"rays", "raster", "forward"}))
       ->capture_default_str();
   add_rays(*app, options->tracing);
   app->add_option("--tolerance", options->tolerance, "Change of radiance at which a pixel counts as converged")
-      ->check(CLI::Range(1e-12, 1.0))
+      ->check(cli::Range(1e-12, 1.0))
       ->capture_default_str();
   app->add_option("--max-steps", options->max_steps, "Most steps along a ray")
-      ->check(CLI::Range(2, 1 << 20))
+      ->check(cli::Range(2, 1 << 20))
       ->capture_default_str();
   app->add_option("--method", options->method,
                   "exact: the medium is integrated; slices: the picture of very many slices that Imagire et al. "
                   "2007 judge by, with its distance from the exact one")
-      ->check(CLI::IsMember({"exact", "slices"}))
+      ->check(cli::IsMember({"exact", "slices"}))
       ->capture_default_str();
-  const CLI::Option* slices = app->add_option("--slices", options->slices, "How many, of --method slices")
-                                  ->check(CLI::Range(1, 4096))
+  const cli::Option* slices = app->add_option("--slices", options->slices, "Slices with --method slices")
+                                  ->check(cli::Range(1, 4096))
                                   ->capture_default_str();
-  const CLI::Option* format = app->add_option("--format", options->format, "half or single: what the slices blend into")
-                                  ->check(CLI::IsMember({"half", "single"}))
+  const cli::Option* format = app->add_option("--format", options->format, "half or single: what the slices blend into")
+                                  ->check(cli::IsMember({"half", "single"}))
                                   ->capture_default_str();
   app->add_option("--shadow-share", options->shadow_share,
                   "Add a layer `shadow`: the pixels whose luminance the shadows in the medium lower by more than this "
                   "share")
-      ->check(CLI::Range(0.0, 0.99));
+      ->check(cli::Range(0.0, 0.99));
   app->footer(
       "Examples:\n"
       "  pellucid reference fog_forest --size 360x270 -o truth.exr\n"
@@ -288,7 +295,7 @@ void add_reference(CLI::App& root, std::vector<Command>& commands) {
       "  pellucid reference teapot_room --surfaces raster --shadow-share 0.05 -o truth.exr\n"
       "  pellucid compare truth.exr hulls.exr --mask shadow");
   commands.push_back({app, [options, slices, format] {
-                        for (const CLI::Option* option : {slices, format}) {
+                        for (const cli::Option* option : {slices, format}) {
                           if (option->count() > 0 && options->method != "slices") {
                             throw InputError(fmt::format("{} goes with --method slices", option->get_name()));
                           }

@@ -1,14 +1,18 @@
 // pellucid render.
-#include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/images/finite.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
@@ -24,16 +28,6 @@ struct Options : FrameOptions {
   std::string technique;
   std::filesystem::path maps;  // a folder; empty: none
 };
-
-void require_finite(const Image& image, const std::string& what) {
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    if (std::isfinite(image.pixels[i])) continue;
-    const std::size_t pixel = i / static_cast<std::size_t>(image.channels);
-    throw RuntimeError(fmt::format("{}: pixel ({}, {}) is not a number", what,
-                                   pixel % static_cast<std::size_t>(image.width),
-                                   pixel / static_cast<std::size_t>(image.width)));
-  }
-}
 
 int render(const Options& options) {
   const Size size = parse_size(options.size);
@@ -53,7 +47,7 @@ int render(const Options& options) {
   const auto time = timer.wait();
   ImageFile file;
   file.image = session.read_color();
-  require_finite(file.image, std::string(session.technique_info().name));
+  require_finite(file.image, fmt::format("the frame of {}", session.technique_info().name));
 
   ordered_json recipe{{"scene", options.scene}, {"technique", options.technique}, {"view", session.camera().view.name},
                       {"width", size.width},    {"height", size.height},          {"parameters", session.parameters()}};
@@ -99,9 +93,9 @@ int render(const Options& options) {
 
 }  // namespace
 
-void add_render(CLI::App& root, std::vector<Command>& commands) {
+void add_render(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* render_app = root.add_subcommand("render", "Render one frame of a scene with a technique");
+  cli::App* render_app = root.add_subcommand("render", "Render one frame of a scene with a technique");
   add_frame_options(*render_app, *options);
   render_app->add_option("-t,--technique", options->technique, "A technique (pellucid list techniques)")->required();
   render_app->add_option("--maps", options->maps,

@@ -1,6 +1,10 @@
 // pellucid reproduce.
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -42,9 +46,9 @@ int reproduce(const Options& options) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& root, std::vector<Command>& commands) {
+void add_reproduce(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("reproduce", "Make a paper's tables and figures again, or a picture");
+  cli::App* app = root.add_subcommand("reproduce", "Make a paper's tables and figures again, or a picture");
   app->add_option("what", options->what,
                   "A paper (pellucid list papers), all, or an EXR that pellucid render or reference wrote")
       ->required();
@@ -56,7 +60,7 @@ void add_reproduce(CLI::App& root, std::vector<Command>& commands) {
          fmt::format("Largest difference of a channel that a file made again on the same device and commit may "
                      "show, else status 3; {} without it",
                      FileOptions{}.tolerance))
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::NonNegativeNumber);
   app->add_flag("--json", options->json, "Print what came out as JSON");
   app->footer(
       "A paper: its sweeps are measured, its tables, figures and pictures made, and DIR/index.html shows them all. "

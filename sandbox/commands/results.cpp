@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -74,7 +75,7 @@ int table(const TableOptions& options) {
   return kDone;
 }
 
-void add_json_flag(CLI::App& app, std::string& format) {
+void add_json_flag(cli::App& app, std::string& format) {
   app.add_flag_callback(
          "--json", [&format] { format = "json"; }, "the same as --format json")
       ->excludes("--format");
@@ -89,12 +90,12 @@ std::string names_text() {
 
 }  // namespace
 
-void add_results(CLI::App& root, std::vector<Command>& commands) {
+void add_results(cli::App& root, std::vector<Command>& commands) {
   auto rows = std::make_shared<ResultsOptions>();
-  CLI::App* results_app = root.add_subcommand("results", "Print every row of a store, failed ones included");
+  cli::App* results_app = root.add_subcommand("results", "Print every row of a store, failed ones included");
   results_app->add_option("store", rows->store, "the SQLite file of a sweep")->required();
   results_app->add_option("--format", rows->format, "csv or json")
-      ->check(CLI::IsMember({"csv", "json"}))
+      ->check(cli::IsMember({"csv", "json"}))
       ->capture_default_str();
   add_json_flag(*results_app, rows->format);
   results_app->footer(
@@ -104,12 +105,12 @@ void add_results(CLI::App& root, std::vector<Command>& commands) {
   commands.push_back({results_app, [rows] { return results(*rows); }});
 
   auto options = std::make_shared<TableOptions>();
-  CLI::App* table_app = root.add_subcommand("table", "Print a paper's table, the published numbers beside ours");
+  cli::App* table_app = root.add_subcommand("table", "Print a paper's table, the published numbers beside ours");
   table_app->add_option("name", options->name, "the table, see below")->required();
   table_app->add_option("--store", options->store,
                         "where our numbers come from; without it only the paper's are shown");
   table_app->add_option("--format", options->format, "md, csv, latex (booktabs) or json")
-      ->check(CLI::IsMember({"md", "csv", "latex", "json"}))
+      ->check(cli::IsMember({"md", "csv", "latex", "json"}))
       ->capture_default_str();
   add_json_flag(*table_app, options->format);
   table_app->add_option("--device-name", options->device,

@@ -2,7 +2,10 @@
 
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,11 +14,11 @@
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "plots/figures/figures.hpp"
-#include "sandbox/commands/arguments.hpp"
-#include "sandbox/commands/commands.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/reproduce/reproduce_report.hpp"
+#include "sandbox/status.hpp"
 #include "sweeps/spec/plan.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,17 +14,17 @@
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 #include "gl/error.hpp"
 #include "plots/pictures/close_up.hpp"
 #include "plots/pictures/false_color.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/reproduce/self.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/metrics/flip.hpp"
 #include "sweeps/metrics/metrics.hpp"
-#include "sweeps/store/provenance.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
 namespace {

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/workers/progress.hpp"
 
 namespace pellucid::sandbox {

@@ -1,14 +1,16 @@
 #include "sandbox/reproduce/self.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "gl/error.hpp"
 #include "plots/charts/process.hpp"
-#include "sandbox/commands/commands.hpp"
+#include "sandbox/status.hpp"
 
 namespace pellucid::sandbox {
 namespace {

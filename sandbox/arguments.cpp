@@ -1,13 +1,14 @@
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <fstream>
 
 #include <fmt/format.h>
 
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::sandbox {
