@@ -17,7 +17,7 @@ struct FigureInfo {
   std::string name;   ///< "sampling_hulls.fps"
   std::string title;  ///< printed above the chart
   std::string doc;    ///< one sentence: what is drawn
-  std::string spec;   ///< the built-in spec (sweeps/papers) that measures its rows
+  std::string spec;   ///< the built-in spec that measures its rows
 };
 
 /// Every named figure, in the order of the papers.

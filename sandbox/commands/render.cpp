@@ -1,4 +1,5 @@
 // pellucid render.
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -12,7 +13,6 @@
 #include <sys/resource.h>
 
 #include "algorithms/render_session.hpp"
-#include "algorithms/scene/images/finite.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
@@ -28,6 +28,16 @@ struct Options : FrameOptions {
   std::string technique;
   std::filesystem::path maps;  // a folder; empty: none
 };
+
+void require_finite(const Image& image, const std::string& what) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (std::isfinite(image.pixels[i])) continue;
+    const std::size_t pixel = i / static_cast<std::size_t>(image.channels);
+    throw RuntimeError(fmt::format("{}: pixel ({}, {}) is not a number", what,
+                                   pixel % static_cast<std::size_t>(image.width),
+                                   pixel / static_cast<std::size_t>(image.width)));
+  }
+}
 
 int render(const Options& options) {
   const Size size = parse_size(options.size);
@@ -47,7 +57,7 @@ int render(const Options& options) {
   const auto time = timer.wait();
   ImageFile file;
   file.image = session.read_color();
-  require_finite(file.image, fmt::format("the frame of {}", session.technique_info().name));
+  require_finite(file.image, std::string(session.technique_info().name));
 
   ordered_json recipe{{"scene", options.scene}, {"technique", options.technique}, {"view", session.camera().view.name},
                       {"width", size.width},    {"height", size.height},          {"parameters", session.parameters()}};

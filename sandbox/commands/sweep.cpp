@@ -34,7 +34,7 @@ struct SweepArguments {
   std::string store;
   std::optional<int> device;
   std::size_t limit = 0;
-  bool dry_run = false, retry_failed = false, quiet = false, as_json = false;
+  bool preview = false, dry_run = false, retry_failed = false, quiet = false, as_json = false;
 };
 
 /// What a store holds of a plan's points; empty when there is no store yet.
@@ -187,7 +187,8 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
 }
 
 int run(const SweepArguments& arguments) {
-  const Spec spec = load_spec(arguments.spec);
+  const Spec spec =
+      load_spec(arguments.spec, installed_catalogue(), arguments.preview ? Extent::preview : Extent::full);
   const Plan plan = make_plan(spec);
   if (arguments.dry_run) return dry_run(spec, plan, arguments);
   if (arguments.store.empty()) throw InputError("--store S.db is missing: where the rows go");
@@ -201,11 +202,13 @@ int run(const SweepArguments& arguments) {
 
 int status(const SweepArguments& arguments) {
   if (arguments.store.empty()) {
+    if (arguments.preview) throw InputError("--preview goes with --store: a store knows its sweeps by itself");
     print_status(Store(arguments.spec, Access::read).status(), arguments.as_json);
     print_other_code(arguments.spec);
     return kDone;
   }
-  const Spec spec = load_spec(arguments.spec);
+  const Spec spec =
+      load_spec(arguments.spec, installed_catalogue(), arguments.preview ? Extent::preview : Extent::full);
   const auto stored = stored_points(arguments.store);
   print_status(count_blocks(spec, make_plan(spec), stored), arguments.as_json);
   if (!stored.empty()) print_other_code(arguments.store);
@@ -223,6 +226,7 @@ void add_sweep(cli::App& root, std::vector<Command>& commands) {
   cli::App* run_app = sweep->add_subcommand("run", "Measure every point of a spec that the store does not hold");
   run_app->add_option("spec", running->spec, "a file SPEC.toml, or the name of a built-in spec")->required();
   run_app->add_option("--store", running->store, "SQLite file that rows go to; made when missing");
+  run_app->add_flag("--preview", running->preview, "the spec as its [preview] changes it: a quick run");
   run_app->add_flag("--dry-run", running->dry_run, "expand and check the spec, print its points, draw nothing");
   run_app->add_option("--device", running->device, "EGL device of the workers (pellucid devices)");
   run_app->add_option("--limit", running->limit, "stop after so many points")->check(cli::PositiveNumber);
@@ -232,6 +236,7 @@ void add_sweep(cli::App& root, std::vector<Command>& commands) {
   run_app->footer(
       "Examples:\n"
       "  pellucid sweep run sampling_hulls_table1 --store results/hulls.db\n"
+      "  pellucid sweep run sampling_hulls_table1 --preview --store results/quick.db\n"
       "  pellucid sweep run my.toml --dry-run\n"
       "A sweep that was stopped or killed goes on when it is run again. Status 1: interrupted, or a point failed.");
   commands.push_back({run_app, [running] { return run(*running); }});
@@ -240,6 +245,7 @@ void add_sweep(cli::App& root, std::vector<Command>& commands) {
   cli::App* status_app = sweep->add_subcommand("status", "Count the points that are done, failed and left, by block");
   status_app->add_option("store_or_spec", asking->spec, "a store; with --store, a spec")->required();
   status_app->add_option("--store", asking->store, "the store to count a spec's points in");
+  status_app->add_flag("--preview", asking->preview, "with --store: of the spec's preview");
   status_app->add_flag("--json", asking->as_json, "print JSON");
   status_app->footer(
       "Examples:\n  pellucid sweep status results/hulls.db\n  pellucid sweep status my.toml --store my.db --json");
