@@ -152,7 +152,7 @@ ReportTable table_block(const PaperOutcome& outcome, const TableOutcome& made) {
                {"CSV", made.path + ".csv"},
                {"LaTeX", made.path + ".tex"},
                {"JSON", made.path + ".json"}};
-  out.commands = {{"Print this table", fmt::format("pellucid table {}{}", made.table.info.name,
+  out.commands = {{"Print this table", fmt::format("pellucid table {}{}", sweeps::shell_word(made.table.info.address),
                                                    store_option(outcome, made.table.info.spec))}};
   return out;
 }
