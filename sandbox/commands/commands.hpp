@@ -25,6 +25,7 @@ void add_compare(CLI::App& root, std::vector<Command>&);    ///< compare
 void add_sweep(CLI::App& root, std::vector<Command>&);      ///< sweep run, sweep status, the hidden worker
 void add_results(CLI::App& root, std::vector<Command>&);    ///< results, table
 void add_bench(CLI::App& root, std::vector<Command>&);      ///< bench
+void add_slab(CLI::App& root, std::vector<Command>&);       ///< slab
 void add_plot(CLI::App& root, std::vector<Command>&);       ///< plot
 void add_reproduce(CLI::App& root, std::vector<Command>&);  ///< reproduce
 
