@@ -48,6 +48,11 @@ class Geocube final : public Technique {
     out["cubes_placed"] = cubes;
     out["object_triangles"] = triangles;
     out["cube_bytes"] = bytes;
+    if (pass_.translucency().bytes() > 0) {
+      out["key_map_bytes"] = pass_.translucency().bytes();
+      out["key_map_full_bytes"] = pass_.translucency().full_resolution_bytes();
+      out["key_map_filter_s"] = pass_.translucency().filter_s();
+    }
     out["unseen_share"] = unseen;
     out["dropped_share"] = dropped;
     if (frame_) pass_.compare_searches(*frame_->scene, frame_->camera).write(out);

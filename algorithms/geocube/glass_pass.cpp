@@ -21,6 +21,11 @@ void GlassPass::prepare(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (optical(scene, scene.instances[i])) objects_.emplace_back(scene, static_cast<int>(i), parameters_);
   }
+  translucency_.prepare(scene, {.model = static_cast<scattering::TransferModel>(parameters_.transfer),
+                                .chain = {.face_size = parameters_.face_size,
+                                          .omega = static_cast<double>(parameters_.omega),
+                                          .filter = static_cast<scattering::SphereFilter>(parameters_.key_filter)},
+                                .widening = static_cast<double>(parameters_.widening)});
   function_table_ = make_function_table(parameters_.table_size);
   fullscreen_ = gl::VertexArray("geocube fullscreen");
 }
@@ -28,7 +33,7 @@ void GlassPass::prepare(const Scene& scene) {
 void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
                              gl::PassTimer& timer) {
   refresh(scene);
-  compile(forward.environment_defines());
+  compile(forward.environment_defines(), Translucency::defines(scene));
   {
     auto pass = timer.pass("opaque");
     target.framebuffer.bind();
@@ -119,11 +124,12 @@ gl::Defines GlassPass::own_defines() const {
   return defines;
 }
 
-void GlassPass::compile(const gl::Defines& environment) {
+void GlassPass::compile(const gl::Defines& environment, const gl::Defines& medium) {
   if (parameters_.stage == SearchStage::split && parameters_.layers > 1)
     throw InputError("geocube: stage = split takes layers = 1");
   gl::Defines defines = own_defines();
   defines.insert(defines.end(), environment.begin(), environment.end());
+  defines.insert(defines.end(), medium.begin(), medium.end());
   if (glass_ && defines == defines_) return;
   const std::string folder = "algorithms/geocube/";
   entry_ = gl::Program("geocube entries", {folder + "object.vert.glsl", folder + "entry.frag.glsl"}, defines);
@@ -207,6 +213,7 @@ void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::
     program.set("object_scale", std::cbrt(std::abs(glm::determinant(glm::mat3(to_world)))));
     program.set("ior", material.ior);
     program.set("absorption", material.absorption);
+    translucency_.bind(program, scene, material);
     program.set("diagonal", static_cast<float>(object.cubes()->set().diagonal));
     program.set("reflections", parameters_.reflections);
     program.set("cut", parameters_.cut);
