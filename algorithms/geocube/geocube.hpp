@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "algorithms/geocube/cubes.hpp"
+#include "algorithms/raster/translucency.hpp"
 #include "algorithms/technique.hpp"
 
 /// Refraction at both sides of a closed object and internal reflection: Chan and Wang 2005 (references.bib: chan2005).
@@ -13,8 +14,6 @@ enum class Placing { automatic, middle, hand };
 enum class Ask { behind, always };
 enum class Functions { evaluated, table };
 enum class SearchStage { fragment, split };
-enum class Transfer { gaussian, unscattered, two_gaussians };
-enum class KeyFilter { direct, three_maps };
 enum class Show { radiance, steps, length, bounded, cube, internal_reflection };
 
 struct Parameters {
@@ -41,7 +40,7 @@ struct Parameters {
   Transfer transfer = Transfer::gaussian;
   int face_size = 512;
   float omega = 0.02F;
-  KeyFilter key_filter = KeyFilter::direct;
+  scattering::SphereFilter key_filter = scattering::SphereFilter::direct;
   float widening = 1;
   Show show = Show::radiance;
 
@@ -129,12 +128,14 @@ struct Parameters {
                          .choices = "fragment|split"});
     visit(PARAM(vertex_iterations),
           {.range = {1, 4096}, .cite = "Sec. 4", .doc = "bound on the steps of the vertex stage, if split"});
-    visit(PARAM(transfer), {.symbol = "T_τ",
-                            .cite = "Sec. 3.3",
-                            .doc = "what stands for the transmission of a scattering medium: the paper's Gaussian and "
-                                   "constant, these with the unscattered part apart, or two Gaussians",
-                            .when = Change::precompute,
-                            .choices = "gaussian|unscattered|two_gaussians"});
+    visit(PARAM(transfer),
+          {.symbol = "T_τ",
+           .cite = "Sec. 3.3",
+           .doc = "what stands for the transmission of a scattering medium: nothing (only absorption acts), "
+                  "the paper's Gaussian and constant, these with the unscattered part apart, or two "
+                  "Gaussians",
+           .when = Change::precompute,
+           .choices = kTransfers});
     visit(PARAM(face_size),
           {.symbol = "n",
            .range = {64, 1024},
@@ -152,7 +153,7 @@ struct Parameters {
     visit(PARAM(key_filter), {.cite = "Sec. 3.1",
                               .doc = "filter environments on the sphere, or as the paper does by three flat maps",
                               .when = Change::precompute,
-                              .choices = "direct|three_maps"});
+                              .choices = scattering::kSphereFilters});
     visit(PARAM(widening), {.cite = "beyond the paper",
                             .doc = "factor of the blur's width: the slab has no interface, at which a body of index η "
                                    "spreads angles by up to η",

@@ -5,6 +5,7 @@
 #include "algorithms/shaders/octahedron.glsl"
 #include "algorithms/shaders/optics.glsl"
 #ifdef SCATTERING
+vec3 sharp_radiance(vec3 direction) { return environment_radiance(direction); }
 #include "algorithms/shaders/translucency.glsl"
 #endif
 

@@ -21,11 +21,11 @@ void GlassPass::prepare(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (optical(scene, scene.instances[i])) objects_.emplace_back(scene, static_cast<int>(i), parameters_);
   }
-  translucency_.prepare(scene, {.model = static_cast<scattering::TransferModel>(parameters_.transfer),
-                                .chain = {.face_size = parameters_.face_size,
+  const scattering::KeyChainOptions chain{.face_size = parameters_.face_size,
                                           .omega = static_cast<double>(parameters_.omega),
-                                          .filter = static_cast<scattering::SphereFilter>(parameters_.key_filter)},
-                                .widening = static_cast<double>(parameters_.widening)});
+                                          .filter = parameters_.key_filter};
+  if (const auto settings = translucency_settings(parameters_.transfer, chain, parameters_.widening))
+    translucency_.prepare(scene, *settings);
   function_table_ = make_function_table(parameters_.table_size);
   fullscreen_ = gl::VertexArray("geocube fullscreen");
 }
@@ -33,7 +33,8 @@ void GlassPass::prepare(const Scene& scene) {
 void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
                              gl::PassTimer& timer) {
   refresh(scene);
-  compile(forward.environment_defines(), Translucency::defines(scene));
+  compile(forward.environment_defines(),
+          parameters_.transfer != Transfer::none ? Translucency::defines(scene) : gl::Defines{});
   {
     auto pass = timer.pass("opaque");
     target.framebuffer.bind();
@@ -213,7 +214,7 @@ void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::
     program.set("object_scale", std::cbrt(std::abs(glm::determinant(glm::mat3(to_world)))));
     program.set("ior", material.ior);
     program.set("absorption", material.absorption);
-    translucency_.bind(program, scene, material);
+    if (parameters_.transfer != Transfer::none) translucency_.bind(program, scene, material);
     program.set("diagonal", static_cast<float>(object.cubes()->set().diagonal));
     program.set("reflections", parameters_.reflections);
     program.set("cut", parameters_.cut);

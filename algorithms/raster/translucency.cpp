@@ -37,6 +37,13 @@ constexpr int kTables = 8;  // media that are kept, as a slider passes them
 
 }  // namespace
 
+std::optional<TranslucencySettings> translucency_settings(Transfer transfer, const KeyChainOptions& chain,
+                                                          float widening) {
+  if (transfer == Transfer::none) return std::nullopt;
+  return TranslucencySettings{static_cast<TransferModel>(static_cast<int>(transfer) - 1), chain,
+                              static_cast<double>(widening)};
+}
+
 void Translucency::prepare(const Scene& scene, const TranslucencySettings& settings) {
   settings_ = settings;
   chain_ = {};
@@ -121,8 +128,8 @@ const gl::Texture& Translucency::table_of(const Material& material) {
 void Translucency::bind(const gl::Program& program, const Scene& scene, const Material& material) {
   if (!any_scatters(scene)) return;
   refresh(scene);
-  chain_.bind(8);
-  table_of(material).bind(9);
+  chain_.bind(11);
+  table_of(material).bind(12);
   program.set("extinction", material.scattering + material.absorption);
   program.set("key_scale", chain_scale_ * scene.environment.scale);
   program.set("mean_radiance", mean_ * scene.environment.scale);

@@ -2,7 +2,8 @@
 
 #include <array>
 #include <map>
-#include <string>
+#include <optional>
+#include <string_view>
 #include <tuple>
 
 #include "algorithms/scattering/key_chain.hpp"
@@ -16,12 +17,19 @@
 /// functions.
 namespace pellucid {
 
+/// What a technique's parameter `transfer` chooses: nothing, so that of a medium absorption alone acts, or a
+/// scattering::TransferModel.
+enum class Transfer { none, gaussian, unscattered, two_gaussians };
+inline constexpr std::string_view kTransfers = "none|gaussian|unscattered|two_gaussians";
+
 struct TranslucencySettings {
   scattering::TransferModel model = scattering::TransferModel::gaussian;
   scattering::KeyChainOptions chain;
   double widening = 1;  ///< factor of the Gaussians' widths
   bool operator==(const TranslucencySettings&) const = default;
 };
+std::optional<TranslucencySettings> translucency_settings(Transfer, const scattering::KeyChainOptions& = {},
+                                                          float widening = 1);
 
 /// The textures. A context must be current for every call.
 class Translucency {
@@ -31,7 +39,7 @@ class Translucency {
   void prepare(const Scene&, const TranslucencySettings&);
   /// What a program that includes translucency.glsl must be compiled with; empty where no material scatters.
   static gl::Defines defines(const Scene&);
-  /// Sets what translucency.glsl reads for one material, which scatters or not: textures to the units 8 and 9.
+  /// Sets what translucency.glsl reads for one material, which scatters or not: textures to the units 11 and 12.
   void bind(const gl::Program&, const Scene&, const Material&);
 
   std::size_t bytes() const;  ///< of the mip chain

@@ -28,9 +28,8 @@ void for_texels(int size, F visit) {
   tbb::parallel_for(tbb::blocked_range2d<int>(0, gl::kCubeFaces * size, 1, 0, size, 16), [&](const auto& range) {
     for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
       for (int x = range.cols().begin(); x < range.cols().end(); ++x) {
-        const gl::CubeTexel texel{row / size, (x + 0.5) / size, (row % size + 0.5) / size};
         visit((static_cast<std::size_t>(row) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x)) * 3,
-              glm::normalize(gl::cube_direction(texel)));
+              texel_direction(size, row / size, x, row % size));
       }
     }
   });

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "gl/cube_faces.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::scattering {
@@ -142,6 +143,10 @@ SphereMap SphereMap::resampled(int height) const {
       out.set(x, y, at(out.direction(x, y)));
   }
   return out;
+}
+
+glm::dvec3 texel_direction(int size, int face, int x, int y) {
+  return glm::normalize(gl::cube_direction({face, (x + 0.5) / size, (y + 0.5) / size}));
 }
 
 double texel_area(int size, int x, int y) {

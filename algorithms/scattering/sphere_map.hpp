@@ -53,7 +53,8 @@ class SphereMap {
   std::vector<float> rgb_;
 };
 
-/// Solid angle of a cube map's texel [sr].
+/// Direction through a cube map's texel, unit, and its solid angle [sr].
+glm::dvec3 texel_direction(int size, int face, int x, int y);
 double texel_area(int size, int x, int y);
 
 }  // namespace pellucid::scattering

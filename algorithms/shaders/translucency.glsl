@@ -1,7 +1,8 @@
-// What a scattering medium makes of the environment behind it: Chan and Wang 2005, Sec. 3.3. Needs environment.glsl; compiled
-// with the defines of Translucency (raster/translucency.hpp), which binds what it reads.
-layout(binding = 8) uniform samplerCube key_maps;   // mip level l is level l + 1 of the chain: level 0 is the environment itself
-layout(binding = 9) uniform sampler2D transfer_map;  // by thickness; a row for each channel, and three more
+// What a scattering medium makes of the environment behind it: Chan and Wang 2005, Sec. 3.3. Who includes it gives the unblurred
+// light as `vec3 sharp_radiance(vec3 direction)`. Compiled with the defines of Translucency (raster/translucency.hpp), which
+// binds what it reads.
+layout(binding = 11) uniform samplerCube key_maps;   // mip level l is level l + 1 of the chain: level 0 is the environment itself
+layout(binding = 12) uniform sampler2D transfer_map;  // by thickness; a row for each channel, and three more
 uniform vec3 extinction;     // 1/m; scattering and absorption
 uniform float key_scale;
 uniform vec3 mean_radiance;  // C_A
@@ -10,7 +11,7 @@ uniform int transfer_model;  // 0 gaussian, 1 unscattered, 2 two_gaussians
 // C_B: the environment blurred as far as the level says.
 vec3 blurred(vec3 direction, float level) {
   if (level >= 1.0) return key_scale * textureLod(key_maps, direction, level - 1.0).rgb;
-  vec3 sharp = environment_radiance(direction);
+  vec3 sharp = sharp_radiance(direction);
   return level > 0.0 ? mix(sharp, key_scale * textureLod(key_maps, direction, 0.0).rgb, level) : sharp;
 }
 
@@ -25,7 +26,7 @@ void transfer_at(float depth, float channel, out vec4 one, out vec4 two) {
 // The light that comes through a thickness from a direction outside.
 vec3 through(vec4 one, vec4 two, vec3 direction) {
   vec3 light = one.y * blurred(direction, one.x) + one.z * mean_radiance;
-  if (transfer_model == 1 && two.z > 0.0) light += two.z * environment_radiance(direction);
+  if (transfer_model == 1 && two.z > 0.0) light += two.z * sharp_radiance(direction);
   if (transfer_model == 2 && two.y > 0.0) light += two.y * blurred(direction, two.x);
   return light;
 }

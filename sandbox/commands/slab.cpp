@@ -90,7 +90,7 @@ void add_slab(CLI::App& root, std::vector<Command>& commands) {
   app->add_option("--albedo", options->medium.albedo, "Share of the extinction that is scattering, from 0 to 1")
       ->required();
   app->add_option("--model", options->model,
-                  "What the transmission is fitted by: gaussian|unscattered|two_gaussians (default: gaussian)")
+                  fmt::format("What the transmission is fitted by: {} (default: gaussian)", kTransferModels))
       ->check(CLI::IsMember({"gaussian", "unscattered", "two_gaussians"}));
   app->add_flag("--json", options->json, "Print JSON");
   app->footer(

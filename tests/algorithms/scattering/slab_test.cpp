@@ -41,8 +41,9 @@ TEST(Slab, LetsOnlyTheUnscatteredThroughWhereNothingScatters) {
 }
 
 TEST(Slab, OfIsotropicEndlessDepthReflectsAsChandrasekharSays) {
-  // The plane albedo at perpendicular incidence of a half-space is 1 − H(1)√(1 − ω), where H solves the integral equation
-  // 1/H(μ) = √(1 − ω) + ω/2 ∫ μ′H(μ′)/(μ + μ′) dμ′ (Chandrasekhar 1960, Ch. V): here by iteration on midpoints.
+  // The plane albedo at perpendicular incidence of a half-space is 1 − H(1)√(1 − ω), where H solves the integral
+  // equation 1/H(μ) = √(1 − ω) + ω/2 ∫ μ′H(μ′)/(μ + μ′) dμ′ (Chandrasekhar 1960, Ch. V): here by iteration on
+  // midpoints.
   constexpr int kPoints = 400;
   const double root = std::sqrt(0.1);
   std::vector<double> h(kPoints, 1.0);
