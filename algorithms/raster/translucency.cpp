@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "algorithms/scene/files/cache_file.hpp"
+#include "gl/cube_faces.hpp"
 
 namespace pellucid {
 namespace {

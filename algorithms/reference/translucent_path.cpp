@@ -43,8 +43,7 @@ const Material* TranslucentPath::medium(const Walker& walker) const {
   return material.scatters() || material.absorption != glm::vec3(0.0F) ? &material : nullptr;
 }
 
-// True if the walker scatters before `distance`; else it has gone that far. Either way its weight is that of all
-// channels.
+// True if the walker scatters before `distance`; else it has gone that far.
 bool TranslucentPath::scatter(Walker& walker, const Material& material, double distance, Random& random) const {
   const glm::dvec3 scattering(material.scattering), extinction = scattering + glm::dvec3(material.absorption);
   const auto left = [&](double s) {
@@ -58,16 +57,16 @@ bool TranslucentPath::scatter(Walker& walker, const Material& material, double d
     walker.weight *= left(distance);
     return false;
   }
-  const double drawn = extinction[std::min(2, static_cast<int>(3 * uniform(random)))];
+  const double drawn = extinction[walker.channel];
   const double s = drawn > 0 ? -std::log(1 - uniform(random)) / drawn : std::numeric_limits<double>::infinity();
-  const auto mean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; };
-  if (s >= distance) {
-    const glm::dvec3 t = left(distance);
-    walker.weight *= t / mean(t);
-    return false;
-  }
-  const glm::dvec3 t = left(s);
-  walker.weight *= scattering * t / mean(extinction * t);
+  const bool scatters = s < distance;
+  const glm::dvec3 t = left(scatters ? s : distance);
+  walker.left *= scatters ? scattering * t : t;
+  walker.likelihood *= scatters ? extinction * t : t;
+  const double scale = 1 / walker.likelihood[walker.channel];
+  walker.left *= scale;
+  walker.likelihood *= scale;
+  if (!scatters) return false;
   walker.start += s * walker.direction;
   walker.direction = deflected(walker.direction, static_cast<double>(material.anisotropy), random);
   walker.from = {};
@@ -80,7 +79,7 @@ bool TranslucentPath::scatter(Walker& walker, const Material& material, double d
 // Paths of little weight go on with a probability and weigh more for it.
 void TranslucentPath::roulette(Walker& walker, Random& random) {
   constexpr double kLow = 0.1;
-  const double weight = worst(walker.weight);
+  const double weight = worst(walker.light());
   if (weight >= kLow || walker.ended) return;
   const double share = weight / kLow;
   if (uniform(random) >= share)
@@ -95,7 +94,7 @@ void TranslucentPath::reflect_off(Walker& walker, const SurfacePoint& point, con
   const bool allowed = point.front ? walker.scattered || limits.entry_reflection
                                    : walker.scattered || walker.reflections < limits.reflections;
   if (!allowed) {
-    tally.limited_weight += worst(walker.weight);
+    tally.limited_weight += worst(walker.light());
     walker.ended = true;
     return;
   }
@@ -111,7 +110,7 @@ void TranslucentPath::interact(Walker& walker, const Hit& hit, const SurfacePoin
   walker.start = point.position;
   walker.face = point.face;
   if (++walker.events > kMostEvents) {
-    tally.cut_weight += worst(walker.weight);
+    tally.cut_weight += worst(walker.light());
     walker.ended = true;
     return;
   }
@@ -125,7 +124,7 @@ void TranslucentPath::interact(Walker& walker, const Hit& hit, const SurfacePoin
     roulette(walker, random);
     return;
   }
-  if (!point.front && !walker.inside.contains(hit.index)) tally.lost_weight += worst(walker.weight);
+  if (!point.front && !walker.inside.contains(hit.index)) tally.lost_weight += worst(walker.light());
   const double ior = static_cast<double>(material.ior);
   const Split split = split_at(arriving, point.normal, point.face, point.front ? 1.0 / ior : ior);
   const double reflected = split.refracted ? split.reflected_share : 1.0;

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/scene/shapes/noise.hpp"
 
 /// Light in solids whose medium scatters, by unbiased random walks inside the exact meshes. A refracting interface
 /// leaves no way to connect a point inside with a light outside, so a walk ends where it leaves: in the environment, or
-/// at a Lambertian surface. Media are homogeneous and scatter by Henyey and Greenstein's phase function; distances are
-/// drawn for one channel at random and weighed for all three.
+/// at a Lambertian surface. Media are homogeneous and scatter by
+/// Henyey and Greenstein's phase function; a path's distances are all drawn for one channel, and weighed by how likely
+/// they are for all three, so that no weight grows without bound.
 namespace pellucid {
 
 /// True if a material that some instance has scatters.
@@ -27,9 +31,13 @@ class TranslucentPath {
  private:
   struct Walker {
     Hit from;  // instance null: it sets out in free space
-    glm::dvec3 start{0.0}, face{0.0}, direction{0.0}, weight{1.0};
+    glm::dvec3 start{0.0}, face{0.0}, direction{0.0};
+    glm::dvec3 weight{1.0};  // of the interfaces, and of chance
+    // What media leave of each channel over the distances gone, and how likely these are for each; times one factor.
+    glm::dvec3 left{1.0}, likelihood{1.0};
     Solids inside;
-    int events = 0, reflections = 0;
+    int events = 0, reflections = 0, channel = 0;
+    glm::dvec3 light() const { return weight * left * (3.0 / (likelihood.x + likelihood.y + likelihood.z)); }
     bool scattered = false, ended = false;
   };
   static constexpr int kMostEvents = 100'000;  // of one path; more is the work of an open mesh
@@ -51,6 +59,7 @@ Hit TranslucentPath::trace(const TreeRay& root, const TreeLimits& limits, Random
   walkers[0].start = root.origin;
   walkers[0].direction = root.direction;
   walkers[0].inside = root.inside;
+  walkers[0].channel = std::min(2, static_cast<int>(3.0F * random.next()));
   walkers[1].ended = true;
   Hit first;
   bool at_root = true;
@@ -71,13 +80,13 @@ Hit TranslucentPath::trace(const TreeRay& root, const TreeLimits& limits, Random
         if (scatter(walker, *inside, hit.distance - unabsorbed, random)) continue;
       }
       if (hit.instance == nullptr) {
-        if (!walker.inside.empty()) tally.lost_weight += worst(walker.weight);
-        miss(walker.direction, walker.weight);
+        if (!walker.inside.empty()) tally.lost_weight += worst(walker.light());
+        miss(walker.direction, walker.light());
         break;
       }
       const SurfacePoint point = surface_at(*scene_, *geometry_, hit, walker.start, walker.direction);
       if (!optical(*scene_, *hit.instance)) {
-        diffuse(hit, point, walker.direction, walker.weight);
+        diffuse(hit, point, walker.direction, walker.light());
         break;
       }
       interact(walker, hit, point, limits, random, tally, other);

@@ -174,7 +174,11 @@ const SphereMap& FilterSource::map_for(double width, SphereMap& finer) const {
     if (fits(maps_[i], kCells)) return maps_[i];
   }
   if (fits(maps_.front(), 1)) return maps_.front();
-  finer = maps_.front().resampled(std::min(8192, static_cast<int>(std::ceil(kPi / width))));
+  // By whole powers of two, so that every source cell keeps its share.
+  int height = maps_.front().height();
+  while (kPi / height > width && height < 8192)
+    height *= 2;
+  finer = maps_.front().resampled(height);
   return finer;
 }
 
