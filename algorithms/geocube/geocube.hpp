@@ -154,11 +154,12 @@ struct Parameters {
                               .doc = "filter environments on the sphere, or as the paper does by three flat maps",
                               .when = Change::precompute,
                               .choices = scattering::kSphereFilters});
-    visit(PARAM(widening), {.cite = "beyond the paper",
-                            .doc = "factor of the blur's width: the slab has no interface, at which a body of index η "
-                                   "spreads angles by up to η",
-                            .range = {0.25, 4},
-                            .when = Change::precompute});
+    visit(PARAM(widening),
+          {.range = {0.25, 4},
+           .cite = "beyond the paper",
+           .doc = "factor of the blur's width: the slab has no interface, at which a flat body of index "
+                  "η spreads angles by η",
+           .when = Change::precompute});
     visit(PARAM(show), {.cite = "Fig. 1c; beyond the paper",
                         .doc = "the picture, or of the first search: its steps over their bound, the way's length over "
                                "the diagonal, where the bound stopped it, the last cube, and where light is totally "
