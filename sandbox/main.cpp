@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   sandbox::add_sweep(root, commands);
   sandbox::add_results(root, commands);
   sandbox::add_bench(root, commands);
+  sandbox::add_slab(root, commands);
   sandbox::add_plot(root, commands);
   sandbox::add_reproduce(root, commands);
 

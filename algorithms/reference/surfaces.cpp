@@ -24,6 +24,7 @@
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/reference/surface_point.hpp"
+#include "algorithms/reference/translucent_path.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {
@@ -157,6 +158,8 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   const Geometry geometry(scene);
   const Illumination light(scene);
   const RayTree tree(scene, geometry);
+  const TranslucentPath walks(scene, geometry);
+  const bool translucent = has_scattering(scene);
   SurfaceLayer layer;
   SurfaceStatistics& statistics = layer.statistics;
   statistics.samples = options.samples;
@@ -211,21 +214,27 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     for (int s = 0; s < options.samples; ++s) {
       const glm::dvec2 place = places.at(x, y, s);
       glm::dvec3 sample(0.0);
-      const Hit first = tree.trace(
-          through(x + place.x, y + place.y), limits, sum.scratch, tally,
-          [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
-            sample += weight * shade(light, &geometry, point, tally.rays);
-            if (!caustics) return;
-            const PhotonMap::Irradiance irradiance = caustics->at(point.position, point.face);
-            const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
-            sample += radiance_per_irradiance * irradiance.mean;
-            // Samples of a pixel share the photons, so their errors add up as they are.
-            const double share = 1.0 / options.samples;
-            caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
-          },
-          [&](const glm::dvec3& direction, const glm::dvec3& weight) {
-            sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
-          });
+      const auto lit = [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
+        sample += weight * shade(light, &geometry, point, tally.rays);
+        if (!caustics) return;
+        const PhotonMap::Irradiance irradiance = caustics->at(point.position, point.face);
+        const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
+        sample += radiance_per_irradiance * irradiance.mean;
+        // Samples of a pixel share the photons, so their errors add up as they are.
+        const double share = 1.0 / options.samples;
+        caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
+      };
+      const auto unlit = [&](const glm::dvec3& direction, const glm::dvec3& weight) {
+        sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
+      };
+      const TreeRay ray = through(x + place.x, y + place.y);
+      Hit first;
+      if (translucent) {
+        Random random(hash_bits(x, y, s, options.seed ^ 0x5bd1e995U));
+        first = walks.trace(ray, limits, random, tally, lit, unlit);
+      } else {
+        first = tree.trace(ray, limits, sum.scratch, tally, lit, unlit);
+      }
       radiance.add(sample);
       distance_m = first.distance;
       if (first.instance != nullptr && optical(scene, *first.instance)) ++met_optical;

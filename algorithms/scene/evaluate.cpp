@@ -229,7 +229,9 @@ void evaluate(SceneDescription& description, Affected what, double time_s, Scene
                                      glm::vec3(from.metal_n),
                                      glm::vec3(from.metal_k),
                                      static_cast<float>(from.ior),
-                                     glm::vec3(from.absorption)};
+                                     glm::vec3(from.absorption),
+                                     glm::vec3(from.scattering),
+                                     static_cast<float>(from.anisotropy)};
       return;
     }
     case Part::instance:

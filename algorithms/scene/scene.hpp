@@ -45,7 +45,10 @@ struct Material {
   glm::vec3 metal_n{1.0F}, metal_k{5.0F};  ///< a metal's complex index n + ik, per channel
   float ior = 1.5F;                        ///< η of a dielectric, relative to what surrounds it
   glm::vec3 absorption{0.0F};  ///< of a dielectric [1/m]: e^(−absorption · path) remains (Beer–Lambert)
+  glm::vec3 scattering{0.0F};  ///< of a dielectric's medium [1/m]; the albedo is its share of scattering + absorption
+  float anisotropy = 0.0F;     ///< mean cosine of the scattering angle, Henyey and Greenstein's phase function
   bool optical() const { return kind != SurfaceKind::lambertian; }
+  bool scatters() const { return kind == SurfaceKind::dielectric && scattering != glm::vec3(0.0F); }
 };
 
 /// One placed mesh.

@@ -23,6 +23,7 @@ void add_compare(cli::App& root, std::vector<Command>&);    ///< compare
 void add_sweep(cli::App& root, std::vector<Command>&);      ///< sweep run, sweep status, the hidden worker
 void add_results(cli::App& root, std::vector<Command>&);    ///< results, table
 void add_bench(cli::App& root, std::vector<Command>&);      ///< bench
+void add_slab(cli::App& root, std::vector<Command>&);       ///< slab
 void add_plot(cli::App& root, std::vector<Command>&);       ///< plot
 void add_reproduce(cli::App& root, std::vector<Command>&);  ///< reproduce
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scattering/slab.hpp"
 #include "algorithms/scene/files/hash.hpp"
 #include "algorithms/scene/meshes/mesh_file.hpp"
 #include "algorithms/scene/meshes/mesh_order.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr NumberRange kSegments{3, 2048};
 constexpr NumberRange kRefractiveIndex{0.2, 5};
+constexpr NumberRange kAnisotropy{-scattering::kMaxAnisotropy, scattering::kMaxAnisotropy};
 constexpr NumberRange kMetalIndex{0.01, 20};
 constexpr NumberRange kExtinctionIndex{0, 50};
 constexpr std::size_t kMostCubes = 16;  // of an object; what geocube's `cubes` goes up to
@@ -163,6 +165,8 @@ void parse_materials(TableReader& root, SceneDescription& scene) {
       case SurfaceKind::dielectric:
         reader.number("ior", material.ior, kRefractiveIndex);
         reader.color("absorption", material.absorption, kRadiance);
+        reader.color("scattering", material.scattering, kRadiance);
+        reader.number("anisotropy", material.anisotropy, kAnisotropy);
         break;
     }
     reader.finish();

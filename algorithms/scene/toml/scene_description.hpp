@@ -49,7 +49,8 @@ struct MaterialDescription {
   SurfaceKind kind = SurfaceKind::lambertian;
   glm::dvec3 reflectance{1.0}, metal_n{1.0}, metal_k{5.0};
   double ior = 1.5;
-  glm::dvec3 absorption{0.0};
+  glm::dvec3 absorption{0.0}, scattering{0.0};
+  double anisotropy = 0;
 };
 
 struct InstanceDescription {

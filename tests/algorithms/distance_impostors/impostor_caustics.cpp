@@ -127,7 +127,7 @@ std::unique_ptr<Landed> land(const Scene& scene, const distance_impostors::Caust
   const MapSettings maps{.cube_size = 256};
   const LookupSettings lookup{.search = {8, Scheme::false_position, 64}};
   auto landed = std::make_unique<Landed>();
-  landed->objects.prepare(scene, maps, true, "test");
+  landed->objects.prepare(scene, maps, lookup, "test");
   landed->caustics.prepare(scene, settings, maps, landed->objects);
   const auto due = landed->objects.due(scene, maps);
   landed->objects.draw_maps(scene, forward, maps, lookup, due);
