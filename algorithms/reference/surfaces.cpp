@@ -21,6 +21,7 @@
 #include "algorithms/reference/pixel_samples.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"
+#include "algorithms/reference/relief_surfaces.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/reference/surface_point.hpp"
 #include "gl/error.hpp"
@@ -156,6 +157,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   const Geometry geometry(scene);
   const Illumination light(scene);
   const RayTree tree(scene, geometry);
+  const ReliefSurfaces reliefs(scene, geometry, light, {options.refract_light});
   SurfaceLayer layer;
   SurfaceStatistics& statistics = layer.statistics;
   statistics.samples = options.samples;
@@ -224,6 +226,11 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
           },
           [&](const glm::dvec3& direction, const glm::dvec3& weight) {
             sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
+          },
+          [&](const Hit& hit, const SurfacePoint& point, const glm::dvec3& direction, const glm::dvec3& weight) {
+            const auto seen = reliefs.seen(hit, point, direction, tally.rays);
+            if (seen) sample += weight * seen->radiance;
+            return seen.has_value();
           });
       radiance.add(sample);
       distance_m = first.distance;
