@@ -12,6 +12,7 @@
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
 #include "algorithms/technique.hpp"
+#include "algorithms/translucent_relief/translucent_relief.hpp"
 #include "algorithms/volume_slices/volume_slices.hpp"
 
 namespace pellucid {
@@ -39,6 +40,10 @@ static const std::array kTechniques{
     TechniqueInfo{"screen_space_refraction", "Screen-space refraction", "wyman2005", true,
                   "refraction at two interfaces, the far side as the screen shows it", screen_space_refraction::table,
                   screen_space_refraction::make, true},
+    TechniqueInfo{
+        "translucent_relief", "Translucent relief", "timonen", false,
+        "a translucent layer over a solid, height fields under a mesh: refraction, reflection, light occlusion",
+        translucent_relief::table, translucent_relief::make, false, true, false, true},
     TechniqueInfo{"volume_slices", "Slices", "cullip1994", true,
                   "the slice-based baseline: one plane a step, blended back to front", volume_slices::table,
                   volume_slices::make},

@@ -25,6 +25,7 @@ ordered_json techniques_json() {
                    {"reference", t.reference},
                    {"baseline", t.baseline},
                    {"interfaces", t.interfaces},
+                   {"reliefs", t.reliefs},
                    {"maps", t.maps},
                    {"doc", t.doc}});
   }
