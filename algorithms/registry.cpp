@@ -18,6 +18,7 @@
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
 #include "algorithms/technique.hpp"
+#include "algorithms/translucent_relief/translucent_relief.hpp"
 #include "algorithms/volume_slices/volume_slices.hpp"
 
 namespace pellucid {
@@ -78,6 +79,15 @@ static const std::array kTechniques{
                   .table = screen_space_refraction::table,
                   .make = screen_space_refraction::make,
                   .interfaces = true},
+    TechniqueInfo{.name = "translucent_relief",
+                  .title = "Translucent relief",
+                  .reference = "timonen",
+                  .doc = "a translucent layer over a solid, height fields under a mesh: refraction, reflection, light "
+                         "occlusion",
+                  .table = translucent_relief::table,
+                  .make = translucent_relief::make,
+                  .maps = true,
+                  .reliefs = true},
     TechniqueInfo{.name = "volume_slices",
                   .title = "Slices",
                   .reference = "cullip1994",

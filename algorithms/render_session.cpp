@@ -36,18 +36,27 @@ Image flipped(const std::vector<float>& texels, int width, int height, int strid
   return image;
 }
 
+std::string techniques_that(bool TechniqueInfo::*draw) {
+  std::string able;
+  for (const TechniqueInfo& other : techniques()) {
+    if (other.*draw) able += (able.empty() ? "" : ", ") + std::string(other.name);
+  }
+  return able.empty() ? "none" : able;
+}
+
 // A frame that silently lacks an object is worse than none.
 void check_drawable(const Scene& scene, const TechniqueInfo& info) {
-  if (info.interfaces) return;
   for (const Instance& instance : scene.instances) {
-    if (!optical(scene, instance)) continue;
-    std::string able;
-    for (const TechniqueInfo& other : techniques()) {
-      if (other.interfaces) able += (able.empty() ? "" : ", ") + std::string(other.name);
+    if (instance.relief >= 0 && !info.reliefs) {
+      throw InputError(
+          fmt::format("technique '{}' draws no reliefs, and '{}' of scene '{}' carries one; those that do: {}",
+                      info.name, instance.name, scene.name, techniques_that(&TechniqueInfo::reliefs)));
     }
-    throw InputError(fmt::format(
-        "technique '{}' draws no mirrors, metals or dielectrics, and '{}' of scene '{}' is one; those that do: {}",
-        info.name, instance.name, scene.name, able.empty() ? "none" : able));
+    if (material_of(scene, instance).optical() && !info.interfaces) {
+      throw InputError(fmt::format(
+          "technique '{}' draws no mirrors, metals or dielectrics, and '{}' of scene '{}' is one; those that do: {}",
+          info.name, instance.name, scene.name, techniques_that(&TechniqueInfo::interfaces)));
+    }
   }
 }
 

@@ -33,6 +33,7 @@ ordered_json techniques_json() {
                    {"reference", t.reference},
                    {"baseline", t.baseline},
                    {"interfaces", t.interfaces},
+                   {"reliefs", t.reliefs},
                    {"maps", t.maps},
                    {"doc", t.doc}});
   }

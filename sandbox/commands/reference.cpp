@@ -52,6 +52,7 @@ sweeps::ReferenceSettings reference_settings(const Options& options) {
   settings.shadow_share = options.shadow_share;
   settings.samples = options.tracing.samples;
   settings.caustics = options.tracing.caustics;
+  settings.refract_light = options.tracing.refract_light;
   return settings;
 }
 
@@ -169,6 +170,7 @@ int reference(const Options& options) {
     recipe["reflections"] = rays.reflections;
     recipe["cut"] = rays.cut;
     recipe["caustics"] = rays.caustics;
+    if (rays.refract_light) recipe["refract_light"] = true;
     if (rays.caustics) {
       recipe["photons"] = rays.photons;
       recipe["caustic_radius_m"] = rays.caustic_radius_m;
@@ -244,6 +246,8 @@ void add_rays(cli::App& app, SurfaceOptions& rays) {
       ->check(cli::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("--caustics", rays.caustics, "Light that reaches surfaces through objects, by photons");
+  app.add_flag("--refract-light", rays.refract_light,
+               "Bend the lights' rays at the media of reliefs, which Timonen leaves straight");
   app.add_option("--photons", rays.photons,
                  "Photons with --caustics, for each light that casts shadows and each object")
       ->check(cli::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))

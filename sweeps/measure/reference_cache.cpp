@@ -189,6 +189,7 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
     if (traced_surfaces) {
       hash.add(fmt::format("rays {} {} {} {} {}", settings.samples, settings.reflections, settings.cut,
                            settings.caustics, settings.caustics ? settings.photons : 0));
+      if (settings.refract_light) hash.add("refract_light");
     } else {
       hash.add(bytes_of(surfaces().radiance.pixels));
       hash.add(std::as_bytes(std::span(surfaces().distance_m)));

@@ -95,23 +95,27 @@ SurfaceOptions surface_options(const ReferenceSettings& settings) {
   options.reflections = settings.reflections;
   options.cut = settings.cut;
   options.caustics = settings.caustics;
+  options.refract_light = settings.refract_light;
   options.photons = static_cast<std::uint64_t>(settings.photons);
   return options;
 }
 
 nlohmann::json to_json(const ReferenceSettings& settings) {
-  return {{"method", name(settings.method)},
-          {"surfaces", name(settings.surfaces)},
-          {"tolerance", settings.tolerance},
-          {"max_steps", settings.max_steps},
-          {"slices", settings.slices},
-          {"format", name(settings.format)},
-          {"shadow_share", settings.shadow_share},
-          {"samples", settings.samples},
-          {"reflections", settings.reflections},
-          {"cut", settings.cut},
-          {"caustics", settings.caustics},
-          {"photons", settings.photons}};
+  nlohmann::json all{{"method", name(settings.method)},
+                     {"surfaces", name(settings.surfaces)},
+                     {"tolerance", settings.tolerance},
+                     {"max_steps", settings.max_steps},
+                     {"slices", settings.slices},
+                     {"format", name(settings.format)},
+                     {"shadow_share", settings.shadow_share},
+                     {"samples", settings.samples},
+                     {"reflections", settings.reflections},
+                     {"cut", settings.cut},
+                     {"caustics", settings.caustics},
+                     {"photons", settings.photons}};
+  // Points that were measured before there was this setting keep their text.
+  if (settings.refract_light) all["refract_light"] = true;
+  return all;
 }
 
 ReferenceSettings reference_settings(const nlohmann::json& all) {
@@ -126,6 +130,7 @@ ReferenceSettings reference_settings(const nlohmann::json& all) {
           .reflections = all.at("reflections"),
           .cut = all.at("cut"),
           .caustics = all.at("caustics"),
+          .refract_light = all.value("refract_light", false),
           .photons = all.at("photons")};
 }
 

@@ -36,6 +36,7 @@ struct ReferenceSettings {
   int reflections = SurfaceOptions{}.reflections;
   double cut = SurfaceOptions{}.cut;
   bool caustics = false;
+  bool refract_light = false;
   int photons = static_cast<int>(SurfaceOptions{}.photons);
 
   bool operator==(const ReferenceSettings&) const = default;

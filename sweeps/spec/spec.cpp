@@ -46,7 +46,7 @@ void read_reference(const SpecReader& read, const toml::table& parent, Reference
   if (table == nullptr) return;
   read.allow(*table,
              {"method", "slices", "format", "surfaces", "tolerance", "max_steps", "shadow_share", "samples",
-              "reflections", "cut", "caustics", "photons"},
+              "reflections", "cut", "caustics", "refract_light", "photons"},
              "reference");
   std::string text;
   if (read.text(*table, "method", text)) {
@@ -77,6 +77,7 @@ void read_reference(const SpecReader& read, const toml::table& parent, Reference
   read.integer(*table, "reflections", 0, 1024, settings.reflections);
   read.real(*table, "cut", 0, 1, settings.cut);
   read.boolean(*table, "caustics", settings.caustics);
+  read.boolean(*table, "refract_light", settings.refract_light);
   read.integer(*table, "photons", 1024, 1 << 28, settings.photons);
 }
 

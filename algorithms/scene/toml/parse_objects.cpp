@@ -206,6 +206,7 @@ void parse_instances(TableReader& root, SceneDescription& scene) {
     reader.extent("scale", instance.scale, kLength, false);
     reader.color("tint", instance.tint, kShare);
     reader.points("cubes", instance.cubes, kCoordinate, kMostCubes);
+    if (reader.has("relief")) carry_relief(reader, scene, instance);
     reader.finish();
     if (instance.placement.position_path || instance.placement.spin) scene.animated.push_back(affected);
   }
