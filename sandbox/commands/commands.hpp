@@ -27,5 +27,6 @@ void add_results(CLI::App& root, std::vector<Command>&);    ///< results, table
 void add_bench(CLI::App& root, std::vector<Command>&);      ///< bench
 void add_plot(CLI::App& root, std::vector<Command>&);       ///< plot
 void add_reproduce(CLI::App& root, std::vector<Command>&);  ///< reproduce
+void add_view(CLI::App& root, std::vector<Command>&);       ///< view, and its hidden renderer
 
 }  // namespace pellucid::sandbox

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
-#include "algorithms/scene/images/image.hpp"
 #include "sandbox/commands/arguments.hpp"
 
 /// What render and reference share: which picture of which scene, where it goes, and what its file says of itself.
@@ -23,11 +21,5 @@ struct FrameOptions {
   bool json = false;
 };
 void add_frame_options(CLI::App&, FrameOptions&);
-
-/// Where a file comes from: version, commit, time, command line.
-nlohmann::ordered_json file_provenance();
-/// What a file must know to be made again (`pellucid reproduce FILE.exr`), and where it comes from.
-Attributes file_attributes(const char* command, const nlohmann::ordered_json& recipe,
-                           const nlohmann::ordered_json& origin);
 
 }  // namespace pellucid::sandbox

@@ -26,6 +26,8 @@ nlohmann::json point_to_json(const Point&);
 Point point_from_json(const nlohmann::json&);
 
 nlohmann::json value_to_json(const Value&);
+/// A number without a fraction becomes an integer; checked() makes it a real where that is asked for.
+Value value_from_json(const nlohmann::json&);
 
 /// One line without the newline; text that is not UTF-8 is mended.
 std::string to_line(const nlohmann::json&);
