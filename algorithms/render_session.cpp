@@ -14,6 +14,7 @@
 
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/forward_pass.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid {
@@ -169,7 +170,7 @@ struct RenderSession::State {
 RenderSession::RenderSession(Scene scene, std::string_view technique, std::string_view view, int width, int height)
     : state_(std::make_unique<State>(std::move(scene), technique)) {
   check_drawable(state_->scene, *state_->info);
-  state_->camera.view = state_->scene.find_view(view);
+  state_->camera.view = view_of(state_->scene, view);
   resize(width, height);
 }
 RenderSession::~RenderSession() = default;
@@ -186,7 +187,7 @@ Change RenderSession::assign(std::string_view name, const Value& value) {
     state_->meshes_changed = state_->meshes_changed || of_scene;
   }
   // A view may be animated by the scene's parameters.
-  state_->camera.view = state_->scene.find_view(state_->camera.view.name);
+  state_->camera.view = view_of(state_->scene, state_->camera.view.name);
   return change;
 }
 

@@ -71,7 +71,7 @@ void write_picture(const std::filesystem::path& path, const ImageFile& file, con
       if (image.channels == 4) pixel[3] = 1.0F;  // a picture to look at, not to composite
     }
   }
-  gl::DisplayTransform(options.display, options.view).apply(image.pixels, image.channels);
+  gl::DisplayTransform(options.display, options.view, options.look).apply(image.pixels, image.channels);
   write_png(path, image, file.attributes);
 }
 

@@ -33,6 +33,7 @@ std::vector<std::string> process_arguments();
 struct DisplayOptions {
   std::string display, view;  ///< of the OpenColorIO config; empty: its default
   double exposure_ev = 0;
+  std::string look{};  ///< of the config; empty: none
 };
 
 /// EXR as it is (half), PNG through the display transform.

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   sandbox::add_slab(root, commands);
   sandbox::add_plot(root, commands);
   sandbox::add_reproduce(root, commands);
+  sandbox::add_view(root, commands);
 
   try {
     if (const std::optional<int> status = command_line.parse(argc, argv)) return *status;

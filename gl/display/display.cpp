@@ -78,18 +78,32 @@ NamedConfig load_config() {
 constexpr const char* kLinearRec709Names[] = {"lin_rec709", "lin_rec709_scene",           "Linear Rec.709 (sRGB)",
                                               "lin_srgb",   "Utility - Linear - Rec.709", "Utility - Linear - sRGB"};
 
+// The look acts on scene-linear pixels, before the view.
+OCIO::TransformRcPtr with_look(const OCIO::DisplayViewTransformRcPtr& to_display, const char* space,
+                               const std::string& look) {
+  if (look.empty()) return to_display;
+  const OCIO::LookTransformRcPtr first = OCIO::LookTransform::Create();
+  first->setSrc(space);
+  first->setDst(space);
+  first->setLooks(look.c_str());
+  const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+  group->appendTransform(first);
+  group->appendTransform(to_display);
+  return group;
+}
+
 // Scene-linear Rec. 709 → (display, view) of `config`. A config need not know our working space by name: the
 // interchange role fixes the way there. A config with neither is taken at its word that `scene_linear` is what
 // renderers produce.
-OCIO::ConstTransformRcPtr make_transform(const NamedConfig& named, const std::string& display,
-                                         const std::string& view) {
+OCIO::ConstTransformRcPtr make_transform(const NamedConfig& named, const std::string& display, const std::string& view,
+                                         const std::string& look) {
   const OCIO::DisplayViewTransformRcPtr to_display = OCIO::DisplayViewTransform::Create();
   to_display->setDisplay(display.c_str());
   to_display->setView(view.c_str());
   for (const char* name : kLinearRec709Names) {
     if (named.config->getColorSpace(name) != nullptr) {
       to_display->setSrc(name);
-      return to_display;
+      return with_look(to_display, name, look);
     }
   }
   if (named.config->hasRole("aces_interchange")) {
@@ -102,7 +116,7 @@ OCIO::ConstTransformRcPtr make_transform(const NamedConfig& named, const std::st
     const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
     group->appendTransform(to_xyz);
     group->appendTransform(to_aces);
-    group->appendTransform(to_display);
+    group->appendTransform(with_look(to_display, "aces_interchange", look));
     return group;
   }
   if (!named.config->hasRole(OCIO::ROLE_SCENE_LINEAR))
@@ -111,7 +125,7 @@ OCIO::ConstTransformRcPtr make_transform(const NamedConfig& named, const std::st
                     "scene-linear pixels from",
                     named.name, kLinearRec709Names[0]));
   to_display->setSrc(OCIO::ROLE_SCENE_LINEAR);
-  return to_display;
+  return with_look(to_display, OCIO::ROLE_SCENE_LINEAR, look);
 }
 
 std::vector<std::string> displays_of(const OCIO::Config& config) {
@@ -125,6 +139,13 @@ std::vector<std::string> views_of(const OCIO::Config& config, const std::string&
   std::vector<std::string> names;
   for (int i = 0; i < config.getNumViews(display.c_str()); ++i)
     names.emplace_back(config.getView(display.c_str(), i));
+  return names;
+}
+
+std::vector<std::string> looks_of(const OCIO::Config& config) {
+  std::vector<std::string> names;
+  for (int i = 0; i < config.getNumLooks(); ++i)
+    names.emplace_back(config.getLookNameByIndex(i));
   return names;
 }
 
@@ -149,13 +170,13 @@ constexpr auto kOptimization =
 
 struct DisplayTransform::State {
   NamedConfig named;
-  std::string display, view;
+  std::string display, view, look;
   OCIO::ConstProcessorRcPtr processor;
   OCIO::ConstCPUProcessorRcPtr cpu;
   std::optional<DisplayProgram> gpu;  // made by the first draw: writing a PNG needs no GL
 };
 
-DisplayTransform::DisplayTransform(const std::string& display, const std::string& view)
+DisplayTransform::DisplayTransform(const std::string& display, const std::string& view, const std::string& look)
     : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.named = load_config();
@@ -163,8 +184,9 @@ DisplayTransform::DisplayTransform(const std::string& display, const std::string
   state.display = choose(display, config.getDefaultDisplay(), displays_of(config), "display", state.named.name);
   state.view = choose(view, config.getDefaultView(state.display.c_str()), views_of(config, state.display), "view",
                       fmt::format("display '{}' of {}", state.display, state.named.name));
+  if (!look.empty()) state.look = choose(look, "", looks_of(config), "look", state.named.name);
   try {
-    const OCIO::ConstTransformRcPtr transform = make_transform(state.named, state.display, state.view);
+    const OCIO::ConstTransformRcPtr transform = make_transform(state.named, state.display, state.view, state.look);
     state.processor = config.getProcessor(transform, OCIO::TRANSFORM_DIR_FORWARD);
     state.cpu = state.processor->getOptimizedCPUProcessor(kOptimization);
   } catch (const OCIO::Exception& error) {  // a LUT file that is missing or malformed, for one
@@ -201,6 +223,14 @@ const std::string& DisplayTransform::display() const {
 
 const std::string& DisplayTransform::view() const {
   return state_ ? state_->view : kNone;
+}
+
+const std::string& DisplayTransform::look() const {
+  return state_ ? state_->look : kNone;
+}
+
+std::vector<std::string> DisplayTransform::looks() const {
+  return state_ ? looks_of(*state_->named.config) : std::vector<std::string>{};
 }
 
 std::vector<std::pair<std::string, std::string>> DisplayTransform::views() const {

@@ -21,9 +21,10 @@ namespace pellucid::gl {
 /// where that is larger. Only draw() needs a GL context, and keeps its program and LUTs in the first one it ran in.
 class DisplayTransform {
  public:
-  /// Without names, the config's default display and view. An unreadable or malformed config, or an unknown name, is an
-  /// InputError that names the file and what it offers.
-  explicit DisplayTransform(const std::string& display = {}, const std::string& view = {});
+  /// Without names, the config's default display and view, and no look beside those that the view has. An unreadable or
+  /// malformed config, or an unknown name, is an InputError that names the file and what it offers.
+  explicit DisplayTransform(const std::string& display = {}, const std::string& view = {},
+                            const std::string& look = {});
   ~DisplayTransform();
   DisplayTransform(DisplayTransform&&) noexcept;
   DisplayTransform& operator=(DisplayTransform&&) noexcept;
@@ -37,8 +38,10 @@ class DisplayTransform {
 
   const std::string& display() const;
   const std::string& view() const;
+  const std::string& look() const;  ///< empty: none
   /// Every (display, view) pair of the config.
   std::vector<std::pair<std::string, std::string>> views() const;
+  std::vector<std::string> looks() const;  ///< of the config; the embedded one has none
 
  private:
   struct State;

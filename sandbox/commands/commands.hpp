@@ -26,5 +26,6 @@ void add_bench(cli::App& root, std::vector<Command>&);      ///< bench
 void add_slab(cli::App& root, std::vector<Command>&);       ///< slab
 void add_plot(cli::App& root, std::vector<Command>&);       ///< plot
 void add_reproduce(cli::App& root, std::vector<Command>&);  ///< reproduce
+void add_view(cli::App& root, std::vector<Command>&);       ///< view, and its hidden renderer
 
 }  // namespace pellucid::sandbox

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 
-#include "algorithms/scene/images/image.hpp"
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/command_line.hpp"
 
@@ -23,11 +21,5 @@ struct FrameOptions {
   bool json = false;
 };
 void add_frame_options(cli::App&, FrameOptions&);
-
-/// Where a file comes from: version, commit, time, command line.
-nlohmann::ordered_json file_provenance();
-/// What a file must know to be made again (`pellucid reproduce FILE.exr`), and where it comes from.
-Attributes file_attributes(const char* command, const nlohmann::ordered_json& recipe,
-                           const nlohmann::ordered_json& origin);
 
 }  // namespace pellucid::sandbox

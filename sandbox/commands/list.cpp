@@ -18,6 +18,7 @@
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/reproduce/papers.hpp"
+#include "sandbox/viewer/state/parameter_json.hpp"
 #include "sweeps/quantities/quantities.hpp"
 
 namespace pellucid::sandbox {
@@ -101,29 +102,6 @@ int list(const std::string& what, bool json) {
   if (all.contains("papers")) print_rows("papers", all["papers"], "title");
   if (all.contains("quantities")) print_rows("quantities", all["quantities"], "doc");
   return kDone;
-}
-
-ordered_json value_json(const Value& value) {
-  return std::visit([](const auto& v) { return ordered_json(v); }, value);
-}
-
-ordered_json parameters_json(std::span<const ParameterInfo> infos) {
-  ordered_json out = ordered_json::array();
-  for (const ParameterInfo& p : infos) {
-    ordered_json entry{{"name", p.name}, {"type", name(p.type)}, {"default", value_json(p.default_value)}};
-    if (p.type == ValueType::choice) entry["choices"] = p.choices;
-    if (p.type == ValueType::integer || p.type == ValueType::real) {
-      entry["min"] = p.min;
-      entry["max"] = p.max;
-    }
-    entry["unit"] = p.unit;
-    entry["symbol"] = p.symbol;
-    entry["cite"] = p.cite;
-    entry["change"] = name(p.when);
-    entry["doc"] = p.doc;
-    out.push_back(std::move(entry));
-  }
-  return out;
 }
 
 std::string range_text(const ParameterInfo& p) {

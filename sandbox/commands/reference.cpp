@@ -17,10 +17,13 @@
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/shadow_maps.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sandbox/commands/file_provenance.hpp"
 #include "sandbox/commands/frame_options.hpp"
 #include "sandbox/commands/scene_facts.hpp"
+#include "sandbox/viewer/out/tev_client.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/spec/point_json.hpp"
@@ -37,6 +40,7 @@ struct Options : FrameOptions {
   int slices = sweeps::ReferenceSettings{}.slices;
   double shadow_share = 0;
   SurfaceOptions tracing;
+  std::string tev;  // HOST:PORT
 };
 
 sweeps::ReferenceSettings reference_settings(const Options& options) {
@@ -112,13 +116,15 @@ ordered_json statistics_json(const SurfaceStatistics& s) {
 int reference(const Options& options) {
   const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
+  std::optional<TevClient> tev;
+  if (!options.tev.empty()) tev.emplace(options.tev);  // before the work
   sweeps::ReferenceSettings settings = reference_settings(options);
   const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
   const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
   Scene loaded = load_scene(options.scene);
   settings = sweeps::settled(settings, loaded.name, has_interfaces(loaded), loaded.volume.has_value());
   const std::map<std::string, Value> parameters = reference_parameters(options, loaded, draws);
-  const Camera camera{loaded.find_view(options.view), size.width, size.height};
+  const Camera camera{view_of(loaded, options.view), size.width, size.height};
   ReferenceOptions tracing;
   tracing.tolerance = options.tolerance;
   tracing.max_steps = options.max_steps;
@@ -197,6 +203,7 @@ int reference(const Options& options) {
   file.attributes = file_attributes("reference", recipe, origin);
   file.attributes["pellucid.reference_error"] = errors.dump();
   write_picture(options.output, file, options.display);
+  if (tev) tev->send("reference of " + options.scene, file.image);
   if (options.json) {
     ordered_json out = recipe;
     out.update(errors);
@@ -292,6 +299,7 @@ void add_reference(cli::App& root, std::vector<Command>& commands) {
                   "Add a layer `shadow`: the pixels whose luminance the shadows in the medium lower by more than this "
                   "share")
       ->check(cli::Range(0.0, 0.99));
+  app->add_option("--tev", options->tev, "HOST:PORT of a tev or HDRView window that shows the picture too");
   app->footer(
       "Examples:\n"
       "  pellucid reference fog_forest --size 360x270 -o truth.exr\n"

@@ -13,7 +13,7 @@
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/store/csv.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/tables/tables.hpp"

@@ -13,6 +13,7 @@
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/scene.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/display/display.hpp"
 #include "gl/error.hpp"
@@ -173,7 +174,7 @@ class Drawing {
     }
     out_.scene_title = scene.title;
     out_.stand_in = scene.stand_in;
-    out_.view = scene.find_view(set.view).name;
+    out_.view = view_of(scene, set.view).name;
     out_.width = set.width / shrink_;
     out_.height = set.height / shrink_;
     out_.enlarged = kEnlarged * shrink_;

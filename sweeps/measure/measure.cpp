@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
@@ -116,7 +117,7 @@ void Measurer::open_session(const Point& point) {
   if (camera.width != point.size.width || camera.height != point.size.height) {
     session_->resize(point.size.width, point.size.height);
   }
-  session_->set_view(session_->scene().find_view(point.view));
+  session_->set_view(view_of(session_->scene(), point.view));
   if (const double seconds = session_->prepare(); seconds > 0) prepare_s_ = seconds;
 }
 

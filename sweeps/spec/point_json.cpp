@@ -18,6 +18,13 @@ json value_to_json(const Value& value) {
   return std::visit([](const auto& v) { return json(v); }, value);
 }
 
+Value value_from_json(const json& value) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (value.is_number()) return value.get<double>();
+  return value.get<std::string>();
+}
+
 json point_to_json(const Point& point) {
   json parameters = json::object();
   for (const auto& [name, value] : point.parameters)
@@ -47,16 +54,8 @@ Point point_from_json(const json& in) {
     point.scene = in.at("scene");
     point.view = in.at("view");
     point.size = {in.at("width"), in.at("height")};
-    for (const auto& [name, value] : in.at("parameters").items()) {
-      if (value.is_boolean())
-        point.parameters[name] = value.get<bool>();
-      else if (value.is_number_integer())
-        point.parameters[name] = value.get<std::int64_t>();
-      else if (value.is_number())
-        point.parameters[name] = value.get<double>();
-      else
-        point.parameters[name] = value.get<std::string>();
-    }
+    for (const auto& [name, value] : in.at("parameters").items())
+      point.parameters[name] = value_from_json(value);
     point.metrics = in.at("metrics").get<std::vector<std::string>>();
     const json& timing = in.at("timing");
     point.timing = {timing.at("enabled"), timing.at("min_samples"), timing.at("max_samples"), timing.at("max_seconds"),

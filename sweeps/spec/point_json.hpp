@@ -13,5 +13,7 @@ nlohmann::json point_to_json(const Point&);
 Point point_from_json(const nlohmann::json&);
 
 nlohmann::json value_to_json(const Value&);
+/// A number without a fraction becomes an integer; checked() makes it a real where that is asked for.
+Value value_from_json(const nlohmann::json&);
 
 }  // namespace pellucid::sweeps

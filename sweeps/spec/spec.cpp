@@ -12,6 +12,7 @@
 
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
 #include "sweeps/metrics/metrics.hpp"
@@ -209,6 +210,20 @@ void read_parameters(const SpecReader& read, const toml::table& table, const Cat
   }
 }
 
+// A view's name, or a camera as text. That is checked as far as it goes without the scene's own numbers.
+void read_view(const SpecReader& read, const SpecReader::Text& view, const std::string& scene,
+               const std::vector<std::string>& names) {
+  if (!is_view_text(view.value)) {
+    read.one_of(*view.node, view.value, names, fmt::format("view of scene {}", scene));
+    return;
+  }
+  Scene stand_in;
+  stand_in.name = scene;
+  for (const std::string& name : names)
+    stand_in.views.emplace_back().name = name;
+  read.at(*view.node, [&] { parse_view_text(view.value, stand_in); });
+}
+
 void read_places(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
   for (const SpecReader::Text& technique : read.required_texts(table, "techniques", block.at)) {
     read.at(*technique.node, [&] { catalogue.technique_parameters(technique.value); });
@@ -220,9 +235,8 @@ void read_places(const SpecReader& read, const toml::table& table, const Catalog
     block.scenes.push_back(resolved);
   }
   for (const SpecReader::Text& view : read.texts(table, "views", false)) {
-    for (const std::string& scene : block.scenes) {
-      read.one_of(*view.node, view.value, catalogue.scene(scene).views, fmt::format("view of scene {}", scene));
-    }
+    for (const std::string& scene : block.scenes)
+      read_view(read, view, scene, catalogue.scene(scene).views);
     block.views.push_back(view.value);
   }
   for (const SpecReader::Text& size : read.texts(table, "sizes", false))

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/tables/table_variables.hpp"
 #include "sweeps/tables/tables.hpp"
 

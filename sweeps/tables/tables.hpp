@@ -10,7 +10,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "algorithms/parameters.hpp"
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
 
 /// Tables of papers in the papers' own form: the published numbers and what to show are data ([tables.NAME] of a
 /// paper's file, grammar in sweeps/README.md), ours come from the rows of a store.
