@@ -84,6 +84,7 @@ Check IsMember(std::vector<std::string> names) {
 
 const Check PositiveNumber = described(CLI::PositiveNumber, "above 0");
 const Check NonNegativeNumber = described(CLI::NonNegativeNumber, "0 or more");
+const Check ExistingDirectory = described(CLI::ExistingDirectory, "a folder");
 
 Option* Option::required() {
   option_->required();
@@ -139,6 +140,7 @@ Option* App::add_option(const std::string& names, T& target, const std::string& 
 template Option* App::add_option(const std::string&, std::string&, const std::string&);
 template Option* App::add_option(const std::string&, std::filesystem::path&, const std::string&);
 template Option* App::add_option(const std::string&, int&, const std::string&);
+template Option* App::add_option(const std::string&, float&, const std::string&);
 template Option* App::add_option(const std::string&, double&, const std::string&);
 template Option* App::add_option(const std::string&, std::size_t&, const std::string&);
 template Option* App::add_option(const std::string&, std::optional<std::string>&, const std::string&);
@@ -169,6 +171,9 @@ void App::require_subcommand(int count) {
 }
 bool App::parsed() const {
   return app_->parsed();
+}
+std::size_t App::count(const std::string& option) const {
+  return app_->count(option);
 }
 
 Option* App::keep(CLI::Option* option) {

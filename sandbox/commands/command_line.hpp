@@ -33,7 +33,7 @@ class Check {
 template <class T>
 Check Range(T low, T high);
 Check IsMember(std::vector<std::string> names);
-extern const Check PositiveNumber, NonNegativeNumber;
+extern const Check PositiveNumber, NonNegativeNumber, ExistingDirectory;
 
 class Option {
  public:
@@ -73,6 +73,7 @@ class App {
   void group(const std::string& name);  ///< empty: hidden from `--help`
   void require_subcommand(int count);
   bool parsed() const;
+  std::size_t count(const std::string& option) const;  ///< occurrences on the command line
 
  private:
   Option* keep(CLI::Option* option);

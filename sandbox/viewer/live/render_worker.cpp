@@ -19,6 +19,7 @@
 #include "sandbox/viewer/state/view_state.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/spec/point_json.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
 namespace {
