@@ -1,6 +1,5 @@
 // pellucid render.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include <sys/resource.h>
 
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/images/finite.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/file_provenance.hpp"
@@ -37,16 +37,6 @@ struct Options : FrameOptions {
   double fps = 30;
 };
 
-void require_finite(const Image& image, const std::string& what) {
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    if (std::isfinite(image.pixels[i])) continue;
-    const std::size_t pixel = i / static_cast<std::size_t>(image.channels);
-    throw RuntimeError(fmt::format("{}: pixel ({}, {}) is not a number", what,
-                                   pixel % static_cast<std::size_t>(image.width),
-                                   pixel / static_cast<std::size_t>(image.width)));
-  }
-}
-
 struct Drawn {
   ordered_json json;
   double frame_ms = 0;
@@ -61,7 +51,7 @@ Drawn draw(const Options& options, RenderSession& session, const gl::Context& co
   const auto time = timer.wait();
   ImageFile file;
   file.image = session.read_color();
-  require_finite(file.image, std::string(session.technique_info().name));
+  require_finite(file.image, fmt::format("the frame of {}", session.technique_info().name));
 
   ordered_json recipe{
       {"scene", options.scene},          {"technique", options.technique},    {"view", session.camera().view.name},
