@@ -23,13 +23,6 @@ constexpr std::uintmax_t kMaxPaperBytes = std::uintmax_t{1} << 20;
 constexpr std::string_view kFolder = "algorithms/";
 constexpr std::string_view kFile = "/paper.toml";
 
-/// "; did you mean 'x'?" or "; there are x, y".
-std::string hint(std::string_view name, const std::vector<std::string>& names) {
-  if (const std::string near = nearest_name(name, names); !near.empty())
-    return fmt::format("; did you mean '{}'?", near);
-  return names.empty() ? "" : fmt::format("; there are {}", fmt::join(names, ", "));
-}
-
 /// The name of the spec in a file, without checking the rest of it: what it measures need not be here.
 std::string spec_name(const std::string& path) {
   const TomlFile file{path};
@@ -54,7 +47,7 @@ std::vector<PaperSweep> read_sweeps(TableReader& root, const Paper& paper) {
       }
     } else if (std::find(embedded.begin(), embedded.end(), given) == embedded.end()) {
       root.fail(place, fmt::format("no sweep named '{}' is built in{} (a file's name ends in .toml)", given,
-                                   hint(given, embedded)));
+                                   name_hint(given, embedded)));
     }
     const bool twice =
         std::any_of(sweeps.begin(), sweeps.end(), [&](const PaperSweep& other) { return other.name == sweep.name; });
@@ -113,10 +106,16 @@ const PaperPointer* find_built_in(std::string_view name) {
 PaperEntry find_in(const PaperPointer& paper, std::string_view name, std::string_view section, std::string_view noun) {
   const std::vector<std::string> names = entry_names(*paper, section);
   if (std::find(names.begin(), names.end(), name) != names.end()) return {paper, std::string(name)};
-  throw InputError(fmt::format("{} has no {} named '{}'{}", paper->file.shown, noun, name, hint(name, names)));
+  throw InputError(fmt::format("{} has no {} named '{}'{}", paper->file.shown, noun, name, name_hint(name, names)));
 }
 
 }  // namespace
+
+std::string name_hint(std::string_view name, const std::vector<std::string>& names) {
+  if (const std::string near = nearest_name(name, names); !near.empty())
+    return fmt::format("; did you mean '{}'?", near);
+  return names.empty() ? "" : fmt::format("; there are {}", fmt::join(names, ", "));
+}
 
 const Quantity* Paper::find_quantity(std::string_view wanted) const {
   for (const Quantity& own : quantities) {
@@ -164,7 +163,7 @@ PaperPointer load_paper(const std::string& name_or_path, const std::vector<std::
   for (const PaperPointer& paper : papers())
     names.push_back(paper->name);
   names.insert(names.end(), also.begin(), also.end());
-  throw InputError(fmt::format("unknown paper '{}'{}", name_or_path, hint(name_or_path, names)));
+  throw InputError(fmt::format("unknown paper '{}'{}", name_or_path, name_hint(name_or_path, names)));
 }
 
 std::vector<std::string> entry_names(const Paper& paper, std::string_view section) {

@@ -68,6 +68,9 @@ std::vector<PaperEntry> built_in_entries(std::string_view section);
 /// file has one only. Throws InputError with the nearest name. `noun`: "table".
 PaperEntry find_entry(std::string_view wanted, std::string_view section, std::string_view noun);
 
+/// "; did you mean 'x'?", "; there are x, y", or nothing where there are none.
+std::string name_hint(std::string_view name, const std::vector<std::string>& names);
+
 /// The entry's own table of the file.
 TableReader read_entry(const PaperEntry&, std::string_view section);
 

@@ -140,8 +140,9 @@ class GroupFiller {
   TableCell shown(const TableLine& line, const TableEntry& column) const {
     Variables variables = merged(out_.variables, column.variables);
     variables["name"] = expand(column.name, variables);
-    const bool named = variables.contains(line.show);
-    const Value value = expand_value(named ? fmt::format("{{{}}}", line.show) : line.show, variables);
+    const bool one_variable = line.show.find('{') == std::string::npos;
+    if (one_variable && !variables.contains(line.show)) return {"", std::nullopt};  // other columns have it
+    const Value value = expand_value(one_variable ? fmt::format("{{{}}}", line.show) : line.show, variables);
     TableCell cell{to_text(value), std::nullopt};
     if (const auto* whole = std::get_if<std::int64_t>(&value)) cell.value = static_cast<double>(*whole);
     if (const auto* real = std::get_if<double>(&value)) cell.value = *real;

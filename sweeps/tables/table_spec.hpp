@@ -24,6 +24,9 @@ struct TableEntry {
   Variables variables;                                            ///< `with`, and the fields that have one value
 };
 
+/// Stands in a file for a value that does not exist.
+inline constexpr std::string_view kNone = "none";
+
 /// What the paper says in one place.
 struct Published {
   std::optional<double> low, high;  ///< the same where it is one number

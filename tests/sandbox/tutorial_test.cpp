@@ -63,7 +63,7 @@ TEST(Tutorial, AMistakeIsAnsweredWithItsPlace) {
   const auto path = folder / "mine.toml";
   std::ofstream(path) << "title = \"Mine\"\nsweeps = [\"geocube_table2\"]\n[tables.t]\ntitle = \"x\"\n"
                          "columns = [{ block = \"head\" }]\nrows = [{ show = \"name\" }, { quantity = \"fsp\" }]\n";
-  EXPECT_TRUE(refused(pellucid({"table", path.string() + ":t"}), 2, {"mine.toml:6:40: ", "unknown quantity 'fsp'"}));
+  EXPECT_TRUE(refused(pellucid({"table", path.string() + ":t"}), 2, {"mine.toml:6:41: ", "unknown quantity 'fsp'"}));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(Paper, MistakesInTheHeadNameTheirPlace) {
   EXPECT_EQ(error_of("title = \"x\"\n[quantities.twice]\nlabel = \"t\"\nexpression = \"2 * \"").substr(0, 47),
             "my.toml:4:14: quantities.twice.expression: expr");
   EXPECT_EQ(error_of("title = \"x\"\n[quantities.fps]\nlabel = \"t\"\nexpression = \"2\""),
-            "my.toml:2:1: quantities: quantities.fps: every row has a quantity of this name already");
+            "my.toml:2:1: quantities.fps: every row has a quantity of this name already");
   EXPECT_EQ(error_of("title = \"x\"\n[quantities.twice]\nlabel = \"t\""),
             "my.toml:2:1: 'expression' is missing in quantities.twice");
 }

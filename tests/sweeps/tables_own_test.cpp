@@ -105,30 +105,32 @@ rows = [{ quantity = "flip_mean" }, { quantity = "fps" }]
 TEST(OwnTables, MistakesNameTheirPlace) {
   const std::string good = "columns = [{ hulls = 1 }]\n";
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"flip_maen\" }]"),
-            "my.toml:11:40: tables.t.rows[1].quantity: unknown quantity 'flip_maen'; did you mean 'flip_mean'?");
+            "my.toml:11:41: tables.t.rows[1].quantity: unknown quantity 'flip_maen'; did you mean 'flip_mean'?");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"{hull}\" }, { quantity = \"fps\" }]"),
             "my.toml:11:9: {hull} is unknown here; did you mean 'hulls'?");
+  EXPECT_EQ(error_of(good + "rows = [{ show = \"hull\" }, { quantity = \"fps\" }]"),
+            "my.toml:11:18: tables.t.rows[0].show: no column has 'hull'; did you mean 'hulls'?");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\", paper = [1, 2] }]"),
-            "my.toml:11:55: tables.t.rows[1].paper: a list of 1 values, one for each column");
+            "my.toml:11:56: tables.t.rows[1].paper: a list of 1 values, one for each column");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\", paper = [\"3..2\"] }]"),
-            "my.toml:11:56: tables.t.rows[1].paper: a published value is a number, \"105..130\" or \"none\"");
+            "my.toml:11:57: tables.t.rows[1].paper: a published value is a number, \"105..130\" or \"none\"");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\", relative_to = 1 }]"),
-            "my.toml:11:61: tables.t.rows[1].relative_to: a column is one of '1', or its position from 0 to 0");
+            "my.toml:11:62: tables.t.rows[1].relative_to: a column is one of '1', or its position from 0 to 0");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\", over = \"old\" }]"),
-            "my.toml:11:54: tables.t.rows[1].over: the table has no families");
+            "my.toml:11:55: tables.t.rows[1].over: the table has no families");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"device\" }]"),
-            "my.toml:11:40: tables.t.rows[1].quantity: 'device' holds words; show it with show");
+            "my.toml:11:41: tables.t.rows[1].quantity: 'device' holds words; show it with show");
   EXPECT_EQ(error_of(good + "rows = [{ quantity = \"fps\" }]"),
             "my.toml:11:8: tables.t.rows: the first row names the columns: {show = \"…\"}");
   EXPECT_EQ(error_of(good + "sweep = \"sampling_hulls\"\nrows = [{ show = \"name\" }, { quantity = \"fps\" }]"),
-            "my.toml:11:9: tables.t.sweep: 'sampling_hulls' is none of the file's `sweeps`; did you mean "
-            "'sampling_hulls_table1'?");
+            "my.toml:11:9: tables.t.sweep: 'sampling_hulls' is none of the file's `sweeps`; there are "
+            "sampling_hulls_table1");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { set = \"errors\" }]"),
-            "my.toml:11:35: tables.t.rows[1].set: [row_sets] has no 'errors'");
+            "my.toml:11:36: tables.t.rows[1].set: [row_sets] has no 'errors'");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\" }]\njson = [\"fsp\", \"result\"]"),
             "my.toml:12:9: tables.t.json: 'fsp' is no variable, no row's id and no quantity");
   EXPECT_EQ(error_of("columns = [{ hulls = 1 }]\nrow = [{ show = \"name\" }]"),
-            "my.toml:11:1: 'rows' is missing in tables.t");
+            "my.toml:8:1: 'rows' is missing in tables.t");
   EXPECT_EQ(error_of("columns = [{ hulls = [] }]\nrows = [{ show = \"name\" }, { quantity = \"fps\" }]"),
             "my.toml:10:22: tables.t.columns[0].hulls must be a list of at least one value");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\", digit = 3 }]"),
