@@ -109,7 +109,7 @@ void add_render(CLI::App& root, std::vector<Command>& commands) {
                                      "values and NAME.png in colours: of {}",
                                      techniques_with_maps()));
   render_app->footer(
-      "Example: pellucid render fog_forest -t sampling_hulls -s hulls=4 -s samples=8 -o fog.png\n"
+      "Example: pellucid render fog_forest -t volume_slices -s slices=64 -o fog.png\n"
       "An EXR carries what made it: pellucid reproduce fog.exr -o DIR renders it again.");
   commands.push_back({render_app, [options] { return render(*options); }});
 }

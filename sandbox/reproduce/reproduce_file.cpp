@@ -11,7 +11,7 @@
 #include "algorithms/scene/images/image.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sandbox/reproduce/self.hpp"
+#include "sandbox/reproduce/run_pellucid.hpp"
 #include "sweeps/store/provenance.hpp"
 
 namespace pellucid::sandbox {
