@@ -17,9 +17,9 @@
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
-#include "sandbox/reproduce/papers.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"
 #include "sweeps/quantities/quantities.hpp"
+#include "sweeps/papers/paper.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -51,8 +51,8 @@ ordered_json scenes_json() {
 
 ordered_json papers_json() {
   ordered_json out = ordered_json::array();
-  for (const Paper& p : papers())
-    out.push_back({{"name", p.name}, {"title", p.title}});
+  for (const sweeps::PaperPointer& paper : sweeps::papers())
+    out.push_back({{"name", paper->name}, {"title", paper->title}});
   return out;
 }
 
@@ -238,7 +238,7 @@ void add_list(cli::App& root, std::vector<Command>& commands) {
       root.add_subcommand("describe", "Show the parameters of a technique or a scene, or explain a quantity");
   describe_app->add_option("name", options->what, "A technique, a scene or a quantity")->required();
   describe_app->add_flag("--json", options->json, "Print JSON");
-  describe_app->footer("Examples:\n  pellucid describe sampling_hulls\n  pellucid describe flip_mean");
+  describe_app->footer("Examples:\n  pellucid describe volume_slices\n  pellucid describe flip_mean");
   commands.push_back({describe_app, [options] { return describe(options->what, options->json); }});
 
   cli::App* devices_app = root.add_subcommand("devices", "List the devices that can render");

@@ -235,8 +235,8 @@ void add_sweep(cli::App& root, std::vector<Command>& commands) {
   run_app->add_flag("--json", running->as_json, "print the summary (with --dry-run: the points) as JSON");
   run_app->footer(
       "Examples:\n"
-      "  pellucid sweep run sampling_hulls_table1 --store results/hulls.db\n"
-      "  pellucid sweep run sampling_hulls_table1 --preview --store results/quick.db\n"
+      "  pellucid sweep run my.toml --store my.db\n"
+      "  pellucid sweep run my.toml --preview --store quick.db\n"
       "  pellucid sweep run my.toml --dry-run\n"
       "A sweep that was stopped or killed goes on when it is run again. Status 1: interrupted, or a point failed.");
   commands.push_back({run_app, [running] { return run(*running); }});

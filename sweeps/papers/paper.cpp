@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/technique.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
 #include "sweeps/spec/spec.hpp"
@@ -83,6 +84,14 @@ PaperPointer parse(std::string_view text, const std::string& shown, bool built_i
   root.text("source", paper->source);
   root.text("machine", paper->machine);
   paper->sweeps = read_sweeps(root, *paper);
+  for (const auto& [technique, place] : root.texts("colours")) {
+    try {
+      find_technique(technique);
+    } catch (const InputError& e) {
+      root.fail(place, e.what());
+    }
+    paper->colours.push_back(technique);
+  }
   paper->quantities = read_quantities(root, true);
   for (const Quantity& quantity : paper->quantities) {
     if (sweeps::find_quantity(quantity.name) != nullptr) {

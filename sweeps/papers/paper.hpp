@@ -26,6 +26,7 @@ struct Paper {
   std::string source;     ///< "Imagire et al. 2007", for captions
   std::string machine;    ///< the authors': "GeForce 7800 GTX, 720 × 540"
   std::vector<PaperSweep> sweeps;
+  std::vector<std::string> colours;  ///< techniques in the order of the palette, for all figures
   std::vector<Quantity> quantities;  ///< of this paper alone: worked out from others
   bool built_in = false;
   TomlFile file;  ///< a path, or the resource's name

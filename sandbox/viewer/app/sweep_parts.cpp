@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "plots/charts/process.hpp"
+#include "sweeps/workers/process.hpp"
 #include "sandbox/viewer/app/app.hpp"
 #include "sandbox/viewer/app/save.hpp"
 
@@ -173,7 +173,7 @@ void App::copy_picture() {
   save_picture(*shown_[0], path, {options_.display, options_.display_view, display_.exposure_ev, options_.look});
   // GLFW's clipboard knows text alone. xclip reads the file at once and serves it from the background.
   const plots::ProcessResult done =
-      plots::run_process({"xclip", "-selection", "clipboard", "-t", "image/png", "-i", path.string()});
+      sweeps::run_process({"xclip", "-selection", "clipboard", "-t", "image/png", "-i", path.string()});
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
   if (!done.found) throw RuntimeError("copying pictures needs the program xclip");

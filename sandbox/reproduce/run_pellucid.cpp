@@ -1,4 +1,4 @@
-#include "sandbox/reproduce/self.hpp"
+#include "sandbox/reproduce/run_pellucid.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "gl/error.hpp"
-#include "plots/charts/process.hpp"
 #include "sandbox/status.hpp"
+#include "sweeps/workers/process.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -38,7 +38,7 @@ std::string run_pellucid(const std::vector<std::string>& arguments) {
   const bool there = !error && std::filesystem::exists(program, error);
   std::vector<std::string> command{there ? program.string() : "/proc/self/exe"};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  plots::ProcessResult result = plots::run_process(command);
+  sweeps::ProcessResult result = sweeps::run_process(command);
   if (result.status == kDone) return std::move(result.output);
   const std::string words = reason(result.diagnostics);
   if (result.status == kBadInput) throw InputError(words);
