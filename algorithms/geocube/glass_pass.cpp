@@ -82,6 +82,9 @@ FetchCounts GlassPass::count_fetches(const Scene& scene, const Camera& camera, c
   if (parameters_.functions != Functions::evaluated || parameters_.stage != SearchStage::fragment ||
       parameters_.layers > 1)
     throw InputError("bench: the bare shader of geocube is of functions = evaluated, stage = fragment and layers = 1");
+  if (parameters_.transfer != Transfer::none && !Translucency::defines(scene).empty())
+    throw InputError(
+        "bench: the bare shader of geocube does not count what a scattering medium fetches: transfer = none");
   gl::Defines defines = defines_;
   bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/geocube/bench/bare_glass.frag.glsl"}, defines);
   defines.emplace_back("COUNT", "1");

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/command_line.hpp"
 

@@ -18,8 +18,8 @@
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"
-#include "sweeps/quantities/quantities.hpp"
 #include "sweeps/papers/paper.hpp"
+#include "sweeps/quantities/quantities.hpp"
 
 namespace pellucid::sandbox {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "algorithms/scene/images/image.hpp"
 #include "gl/error.hpp"
-#include "sandbox/status.hpp"
 #include "sandbox/reproduce/run_pellucid.hpp"
+#include "sandbox/status.hpp"
 #include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {

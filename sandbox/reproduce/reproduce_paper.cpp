@@ -17,7 +17,6 @@
 #include "plots/figures/figures.hpp"
 #include "plots/pictures/picture_sets.hpp"
 #include "sandbox/arguments.hpp"
-#include "sandbox/status.hpp"
 #include "sandbox/reproduce/reproduce_report.hpp"
 #include "sandbox/status.hpp"
 #include "sweeps/spec/plan.hpp"

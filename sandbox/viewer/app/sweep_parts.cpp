@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/workers/process.hpp"
 #include "sandbox/viewer/app/app.hpp"
 #include "sandbox/viewer/app/save.hpp"
+#include "sweeps/workers/process.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -172,11 +172,11 @@ void App::copy_picture() {
   const auto path = std::filesystem::temp_directory_path() / fmt::format("pellucid_clipboard_{}.png", ::getpid());
   save_picture(*shown_[0], path, {options_.display, options_.display_view, display_.exposure_ev, options_.look});
   // GLFW's clipboard knows text alone. xclip reads the file at once and serves it from the background.
-  const plots::ProcessResult done =
+  const sweeps::ProcessResult done =
       sweeps::run_process({"xclip", "-selection", "clipboard", "-t", "image/png", "-i", path.string()});
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
-  if (!done.found) throw RuntimeError("copying pictures needs the program xclip");
+  if (done.status == 127) throw RuntimeError("copying pictures needs the program xclip");
   if (done.status != 0) throw RuntimeError(fmt::format("xclip: {}", done.diagnostics));
   say("copied the picture as PNG");
 }

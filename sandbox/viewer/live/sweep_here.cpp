@@ -11,8 +11,8 @@
 #include "gl/error.hpp"
 #include "plots/charts/chart.hpp"
 #include "sandbox/viewer/app/save.hpp"
-#include "sweeps/store/store.hpp"
 #include "sweeps/spec/point_json.hpp"
+#include "sweeps/store/store.hpp"
 
 namespace pellucid::sandbox {
 
