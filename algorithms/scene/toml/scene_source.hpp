@@ -20,6 +20,7 @@ class SceneSource {
   /// Evaluates the whole scene at the current values.
   void evaluate_all(Scene&);
   const ParameterTable& table() const { return table_; }
+  LoadingFacts& facts() { return description_->facts; }
   std::uint64_t revision() const { return revision_; }
   std::string content_hash() const;
 
