@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/images/picture_file.hpp"
 #include "gl/display.hpp"
 #include "gl/error.hpp"
 
@@ -47,6 +48,23 @@ void check_output(const std::filesystem::path& path, std::initializer_list<std::
   }
 }
 
+void check_no_input(const std::filesystem::path& output, const std::filesystem::path& input, std::string_view option) {
+  std::error_code error;
+  if (!input.empty() && std::filesystem::equivalent(output, input, error) && !error)
+    throw InputError(fmt::format("{} {}: it would overwrite what is read", option, output.string()));
+}
+
+void require_finite(const Image& image, const std::string& what) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (std::isfinite(image.pixels[i])) continue;
+    const std::size_t pixel = i / static_cast<std::size_t>(image.channels);
+    throw RuntimeError(fmt::format(
+        "{}: pixel ({}, {}) is {}{}", what, pixel % static_cast<std::size_t>(image.width),
+        pixel / static_cast<std::size_t>(image.width), image.pixels[i],
+        std::isinf(image.pixels[i]) ? " (16-bit floats hold up to 65504; frame.format=single holds more)" : ""));
+  }
+}
+
 std::vector<std::string> process_arguments() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> arguments;
@@ -57,7 +75,7 @@ std::vector<std::string> process_arguments() {
 
 void write_picture(const std::filesystem::path& path, const ImageFile& file, const DisplayOptions& options) {
   if (path.extension() == ".exr") {
-    write_exr(path, file, ExrPixel::half);
+    write_exr(path, file, exact_pixel(file.image));
     return;
   }
   Image image = file.image;

@@ -1,5 +1,4 @@
 // pellucid render.
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -9,6 +8,8 @@
 #include <sys/resource.h>
 
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/images/picture_file.hpp"
+#include "algorithms/scene/loading_facts.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
@@ -25,22 +26,14 @@ struct Options : FrameOptions {
   std::filesystem::path maps;  // a folder; empty: none
 };
 
-void require_finite(const Image& image, const std::string& what) {
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    if (std::isfinite(image.pixels[i])) continue;
-    const std::size_t pixel = i / static_cast<std::size_t>(image.channels);
-    throw RuntimeError(fmt::format("{}: pixel ({}, {}) is not a number", what,
-                                   pixel % static_cast<std::size_t>(image.width),
-                                   pixel / static_cast<std::size_t>(image.width)));
-  }
-}
-
 int render(const Options& options) {
   const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
   const TechniqueInfo& technique = find_technique(options.technique);  // a wrong name is told before the scene loads
   if (!options.maps.empty()) check_maps(technique, options.maps);
   Scene scene = load_scene(options.scene);
+  check_output_is_no_input(options.output, scene);
+  print_warnings(scene);
   const gl::Context context({.device = options.device});
   RenderSession session(std::move(scene), options.technique, options.view, size.width, size.height);
   for (const std::string& setting : options.settings) {
@@ -54,6 +47,13 @@ int render(const Options& options) {
   ImageFile file;
   file.image = session.read_color();
   require_finite(file.image, std::string(session.technique_info().name));
+  const bool half = session.parameters().value("frame.format", "") == "half";
+  const std::size_t saturated = half ? saturated_pixels(file.image) : 0;
+  if (saturated > 0)
+    fmt::print(stderr,
+               "warning: {} pixels reach 65504, the most that the frame's 16-bit floats hold (frame.format=single "
+               "holds more)\n",
+               saturated);
 
   ordered_json recipe{{"scene", options.scene}, {"technique", options.technique}, {"view", session.camera().view.name},
                       {"width", size.width},    {"height", size.height},          {"parameters", session.parameters()}};
@@ -80,11 +80,13 @@ int render(const Options& options) {
     nlohmann::json errors = nlohmann::json::object();
     session.technique().native_errors(errors);
     out["native_errors"] = errors;
+    out["saturated_pixels"] = saturated;
     out["gpu_bytes"] = gl::allocated_bytes();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     out["peak_rss_bytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
     out["volume"] = volume_json(session.scene());
+    out["warnings"] = loading_facts(session.scene()).warnings;
     out["provenance"] = origin;
     out["output"] = options.output.string();
     if (!options.maps.empty()) out["maps"] = maps;
