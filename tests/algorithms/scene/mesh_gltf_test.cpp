@@ -40,7 +40,7 @@ class GltfFiles : public test::MeshFormats {
     json d =
         json::parse(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
       "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}]})");
-    d["buffers"] = {{{"uri", "box.bin"}, {"byteLength", positions + 288 + 72}}};
+    d["buffers"] = json::array({json{{"uri", "box.bin"}, {"byteLength", positions + 288 + 72}}});
     d["bufferViews"] = {{{"buffer", 0}, {"byteLength", positions}},
                         {{"buffer", 0}, {"byteOffset", positions}, {"byteLength", 288}},
                         {{"buffer", 0}, {"byteOffset", positions + 288}, {"byteLength", 72}}};
@@ -51,7 +51,7 @@ class GltfFiles : public test::MeshFormats {
     d["bufferViews"][0]["byteStride"] = 8;
     d["accessors"][0]["normalized"] = true;
     d["nodes"][0]["scale"] = {0.5, 0.5, 0.5};
-    d["extensionsRequired"] = {"KHR_mesh_quantization"};
+    d["extensionsRequired"] = json::array({"KHR_mesh_quantization"});
     return d;
   }
   MeshFile expect_box_of(const json& d, double tolerance = 1e-6) { return expect_box("box.gltf", d.dump(), tolerance); }
@@ -152,7 +152,7 @@ TEST_F(GltfFiles, StripsFansAndSparseAccessors) {
 TEST_F(GltfFiles, WhatIsNotUnderstoodOrNotThereIsRefused) {
   write("box.bin", buffer());
   json draco = document();
-  draco["extensionsRequired"] = {"KHR_materials_unlit", "KHR_draco_mesh_compression"};
+  draco["extensionsRequired"] = json::array({"KHR_materials_unlit", "KHR_draco_mesh_compression"});
   EXPECT_EQ(refusal_of(draco), "it requires the extension KHR_draco_mesh_compression, which is not supported");
   json many = document();
   many["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = json::object();
@@ -161,7 +161,7 @@ TEST_F(GltfFiles, WhatIsNotUnderstoodOrNotThereIsRefused) {
   compressed["accessors"][0].erase("bufferView");
   EXPECT_EQ(refusal_of(compressed), "the accessor of POSITION has no data (compressed data are not read)");
   json loop = document();
-  loop["nodes"][0]["children"] = {0};
+  loop["nodes"][0]["children"] = json::array({0});
   EXPECT_EQ(refusal_of(loop), "node 0 has two parents");
   json beyond = document();
   beyond["accessors"][2]["count"] = 39;

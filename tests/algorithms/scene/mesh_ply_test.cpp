@@ -111,12 +111,14 @@ TEST_F(PlyFiles, PropertiesAndElementsThatAreNotUsedArePassedOver) {
 
 TEST_F(PlyFiles, DamagedFilesAreRefusedInOneLine) {
   EXPECT_EQ(refusal("a.ply", header("ascii") + text(5)), "it ends at face 5 of 6");
-  EXPECT_EQ(refusal("a.ply", header("binary_little_endian") + binary().substr(0, 180)), "it ends at face 5 of 6");
+  EXPECT_EQ(refusal("a.ply", header("binary_little_endian") + binary().substr(0, 181)), "it ends at face 5 of 6");
+  EXPECT_EQ(refusal("a.ply", header("binary_little_endian") + binary().substr(0, 180)),
+            "face 4 has a list that ends too soon");
   EXPECT_EQ(refusal("a.ply", header("ascii") + text(5) + "4 0 1 3\n"), "face 5 has a list that ends too soon");
   EXPECT_EQ(refusal("a.ply", header("ascii") + text(5) + "4 0 1 3 8\n"), "a face names vertex 8 of 8");
-  EXPECT_EQ(refusal("a.ply", header("ascii") + text(5) + "4 0 1 3 x\n"), "face 5 has 'x' for a number in line 26");
+  EXPECT_EQ(refusal("a.ply", header("ascii") + text(5) + "4 0 1 3 x\n"), "face 5 has 'x' for a number in line 25");
   EXPECT_EQ(refusal("a.ply", header("ascii") + text(5) + "4 0 1 3 2 7\n"),
-            "face 5 has more numbers than its header says, in line 26");
+            "face 5 has more numbers than its header says, in line 25");
   EXPECT_EQ(refusal("a.ply", header("ascii") + text() + "4 0 1 3 2\n"),
             "something follows the elements that its header promises");
   EXPECT_EQ(refusal("a.ply", header("binary_little_endian") + binary() + "x"),

@@ -245,7 +245,7 @@ TEST_F(VolumeFiles, VtkImageDataErrors) {
   std::string cells = vti("1 2 3 4 5 6", "0 3 0 2 0 1");
   for (auto at = cells.find("PointData"); at != std::string::npos; at = cells.find("PointData"))
     cells.replace(at, 9, "CellData");
-  EXPECT_TRUE(error_of("a.vti", cells).starts_with("Error reading extent")) << "24 cells from 6 numbers";
+  EXPECT_EQ(load_volume_file(write("cells.vti", cells)).size, glm::ivec3(3, 2, 1)) << "between 4 x 3 x 2 points";
 }
 
 TEST_F(VolumeFiles, InrInEitherByteOrder) {
