@@ -28,8 +28,8 @@
 #include <vtkXMLUtilities.h>
 
 #include "gl/error.hpp"
-#include "plots/charts/process.hpp"
 #include "plots/charts/scratch_file.hpp"
+#include "sweeps/workers/process.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -96,7 +96,7 @@ bool built_in_font_has(const std::string& text) {
 /// The file of a font that has nearly everything; what it lacks it draws as a box.
 const std::string& full_font(bool bold) {
   static const auto find = [](const char* pattern) {
-    const ProcessResult result = run_process({"fc-match", "--format=%{file}", pattern});
+    const sweeps::ProcessResult result = sweeps::run_process({"fc-match", "--format=%{file}", pattern});
     return result.found && result.status == 0 ? result.output : std::string();
   };
   static const std::string plain = find("DejaVu Sans:style=Book"), heavy = find("DejaVu Sans:style=Bold");

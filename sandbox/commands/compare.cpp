@@ -1,9 +1,14 @@
 // pellucid compare.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,7 +17,7 @@
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/images/picture_file.hpp"
 #include "gl/error.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/metrics/metrics.hpp"
 
@@ -229,9 +234,9 @@ int compare(const Options& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& root, std::vector<Command>& commands) {
+void add_compare(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("compare", "Compare an image with a reference by image metrics");
+  cli::App* app = root.add_subcommand("compare", "Compare an image with a reference by image metrics");
   app->add_option("reference", options->reference, "The reference: EXR (scene-linear) or PNG (display-encoded)")
       ->required();
   app->add_option("test", options->test, "The image to judge: of the same kind and size")->required();
@@ -242,13 +247,13 @@ void add_compare(CLI::App& root, std::vector<Command>& commands) {
   app->add_flag("--json", options->json, "Print the values as JSON; the infinite PSNR of equal images is null");
   app->add_option("--map", options->map,
                   "Write FLIP's error map: .png in colours from black (0) to pale yellow (1), .exr as values");
-  CLI::Option* mask = app->add_option(
+  cli::Option* mask = app->add_option(
       "--mask", options->mask,
       "Give every value under a mask too (above 0.5): an image file, or a layer of the reference; a layer named mask "
       "is used without asking");
   app->add_flag("--no-mask", options->no_mask, "Leave the reference's layer mask alone")->excludes(mask);
   app->add_option("--ppd", options->pixels_per_degree, "FLIP's pixels per degree of visual angle")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(cli::Range(1.0, 1000.0))
       ->capture_default_str();
   app->add_option("--fail-above", options->fail_above,
                   "metric=number: exit with status 3 if the value is above; repeatable")

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <map>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -225,6 +228,8 @@ std::vector<StoredPoint> Store::points() const {
     point.id = statement.text(0);
     point.failed = statement.integer(1) != 0;
     const nlohmann::json row = state_->parse_row(statement.text(2), point.id);
+    point.technique = row.value("technique", "");
+    point.code_hash = row.value("code_hash", "");
     point.device = row.value("device", "");
     point.driver = row.value("driver", "");
     point.commit = row.value("commit", "");

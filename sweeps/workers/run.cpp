@@ -5,17 +5,18 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/stop_signals.hpp"
 #include "sweeps/workers/worker_client.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -233,7 +234,7 @@ class Runner {
     row["driver"] = client_.hello().driver;
     if (!row.contains("clock")) row["clock"] = client_.hello().clock;
     if (!row.contains("scene_hash")) row["scene_hash"] = point.scene_hash;
-    row["shader_hash"] = point.shader_hash;
+    row["code_hash"] = point.code_hash;
     row["commit"] = kCommit;
     row["dirty"] = kDirty;
     row["argv"] = argv_;

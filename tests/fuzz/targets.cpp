@@ -11,7 +11,7 @@
 #include "algorithms/scene/meshes/mesh_file.hpp"
 #include "algorithms/scene/toml/scene_description.hpp"
 #include "algorithms/scene/volumes/volume_file.hpp"
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 #include "gl/error.hpp"
 #include "sweeps/spec/paper.hpp"
 #include "sweeps/spec/spec.hpp"

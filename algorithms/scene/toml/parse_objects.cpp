@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scattering/slab.hpp"
 #include "algorithms/scene/files/hash.hpp"
 #include "algorithms/scene/meshes/mesh_file.hpp"
 #include "algorithms/scene/meshes/mesh_order.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr NumberRange kSegments{3, 2048};
 constexpr NumberRange kRefractiveIndex{0.2, 5};
+constexpr NumberRange kAnisotropy{-scattering::kMaxAnisotropy, scattering::kMaxAnisotropy};
 constexpr NumberRange kMetalIndex{0.01, 20};
 constexpr NumberRange kExtinctionIndex{0, 50};
 constexpr std::size_t kMostCubes = 16;  // of an object; what geocube's `cubes` goes up to
@@ -171,6 +173,8 @@ void parse_materials(TableReader& root, SceneDescription& scene) {
       case SurfaceKind::dielectric:
         reader.number("ior", material.ior, kRefractiveIndex);
         reader.color("absorption", material.absorption, kRadiance);
+        reader.color("scattering", material.scattering, kRadiance);
+        reader.number("anisotropy", material.anisotropy, kAnisotropy);
         break;
     }
     reader.finish();
@@ -210,6 +214,7 @@ void parse_instances(TableReader& root, SceneDescription& scene) {
     reader.extent("scale", instance.scale, kLength, false);
     reader.color("tint", instance.tint, kShare);
     reader.points("cubes", instance.cubes, kCoordinate, kMostCubes);
+    if (reader.has("relief")) carry_relief(reader, scene, instance);
     reader.finish();
     if (instance.placement.position_path || instance.placement.spin) scene.animated.push_back(affected);
   }

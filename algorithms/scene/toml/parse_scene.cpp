@@ -19,6 +19,7 @@ void parse_scene(std::string_view text, const std::filesystem::path& folder, Sce
   root.set_affected(std::nullopt);
   parse_materials(root, scene);
   parse_meshes(root, folder, scene);
+  parse_reliefs(root, folder, scene);
   parse_instances(root, scene);
   parse_forest(root, scene);
   parse_lights(root, scene);
