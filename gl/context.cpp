@@ -4,6 +4,7 @@
 #include <cassert>
 #include <map>
 #include <mutex>
+#include <tuple>
 #include <utility>
 
 #include <EGL/egl.h>

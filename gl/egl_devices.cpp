@@ -1,5 +1,7 @@
 #include "gl/egl_devices.hpp"
 
+#include <cstddef>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
 #include <vtkBrush.h>

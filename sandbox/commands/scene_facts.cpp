@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "algorithms/scene/loading_facts.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 
 namespace pellucid::sandbox {
 

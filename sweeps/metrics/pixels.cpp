@@ -1,6 +1,7 @@
 #include "sweeps/metrics/pixels.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/format.h>
 

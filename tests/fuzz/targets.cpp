@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "algorithms/scene/images/environment_layout.hpp"
@@ -13,7 +15,7 @@
 #include "algorithms/scene/volumes/volume_file.hpp"
 #include "gl/display/display.hpp"
 #include "gl/error.hpp"
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/spec/spec.hpp"
 #include "sweeps/store/store.hpp"
 

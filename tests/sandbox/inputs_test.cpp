@@ -1,6 +1,8 @@
 // What the program takes in, and that what it puts out keeps what was computed.
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>

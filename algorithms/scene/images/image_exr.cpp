@@ -1,7 +1,13 @@
 #include <algorithm>
+#include <cstddef>
 #include <exception>
+#include <filesystem>
+#include <map>
 #include <set>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>

@@ -1,8 +1,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <list>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

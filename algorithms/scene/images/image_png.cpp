@@ -2,10 +2,15 @@
 #include <cerrno>
 #include <cmath>
 #include <csetjmp>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <span>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <png.h>

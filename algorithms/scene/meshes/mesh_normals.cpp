@@ -2,7 +2,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <unordered_map>
+#include <vector>
 
 #include "algorithms/scene/meshes/mesh_file.hpp"
 

@@ -1,6 +1,8 @@
 #include "algorithms/scene/meshes/ply_header.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 

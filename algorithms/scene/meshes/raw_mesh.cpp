@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>

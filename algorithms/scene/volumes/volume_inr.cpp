@@ -1,7 +1,11 @@
 #include <bit>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 

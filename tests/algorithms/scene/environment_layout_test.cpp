@@ -1,9 +1,14 @@
 #include "algorithms/scene/images/environment_layout.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <ImfEnvmap.h>
 #include <glm/glm.hpp>

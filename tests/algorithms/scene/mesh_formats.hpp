@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/glm.hpp>

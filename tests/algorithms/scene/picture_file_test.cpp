@@ -1,7 +1,13 @@
 #include "algorithms/scene/images/picture_file.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
