@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/images/picture_file.hpp"
 #include "gl/display/display.hpp"
 #include "gl/error.hpp"
 
@@ -48,6 +49,12 @@ void check_output(const std::filesystem::path& path, std::initializer_list<std::
   }
 }
 
+void check_no_input(const std::filesystem::path& output, const std::filesystem::path& input, std::string_view option) {
+  std::error_code error;
+  if (!input.empty() && std::filesystem::equivalent(output, input, error) && !error)
+    throw InputError(fmt::format("{} {}: it would overwrite what is read", option, output.string()));
+}
+
 std::vector<std::string> process_arguments() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> arguments;
@@ -58,7 +65,7 @@ std::vector<std::string> process_arguments() {
 
 void write_picture(const std::filesystem::path& path, const ImageFile& file, const DisplayOptions& options) {
   if (path.extension() == ".exr") {
-    write_exr(path, file, ExrPixel::half);
+    write_exr(path, file, exact_pixel(file.image));
     return;
   }
   Image image = file.image;

@@ -26,6 +26,9 @@ std::pair<std::string, std::string> parse_assignment(const std::string& text);
 /// found out before the work, not after.
 void check_output(const std::filesystem::path& path, std::initializer_list<std::string_view> extensions);
 
+/// Throws InputError when `output` is the file `input` (which need not exist): what is read is not overwritten.
+void check_no_input(const std::filesystem::path& output, const std::filesystem::path& input, std::string_view option);
+
 /// This process's command line, for the record.
 std::vector<std::string> process_arguments();
 
@@ -36,7 +39,7 @@ struct DisplayOptions {
   std::string look{};  ///< of the config; empty: none
 };
 
-/// EXR as it is (half), PNG through the display transform.
+/// EXR with every value as it is, in 16-bit floats where they hold all of them; PNG through the display transform.
 void write_picture(const std::filesystem::path& path, const ImageFile& file, const DisplayOptions&);
 
 }  // namespace pellucid::sandbox

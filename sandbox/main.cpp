@@ -4,6 +4,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +16,23 @@
 using namespace pellucid;
 
 namespace {
+
+/// A name in a message may hold line ends or a terminal's control characters; an error is one line all the same.
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7F)
+      out += c;
+    else if (c == '\n')
+      out += "\\n";
+    else if (c == '\t')
+      out += "\\t";
+    else
+      out += fmt::format("\\x{:02x}", byte);
+  }
+  return out;
+}
 
 /// Output that nobody received is a failure (a full disk behind a redirection).
 void check_standard_output() {
@@ -52,12 +70,12 @@ int main(int argc, char** argv) {
       return status;
     }
   } catch (const InputError& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    fmt::print(stderr, "error: {}\n", printable(e.what()));
     return sandbox::kBadInput;
   } catch (const std::exception& e) {
     // fmt says only "file" when standard output takes no more.
     const std::string words = std::ferror(stdout) != 0 ? "cannot write to standard output" : e.what();
-    fmt::print(stderr, "error: {}\n", words);
+    fmt::print(stderr, "error: {}\n", printable(words));
     return sandbox::kFailed;
   }
   return sandbox::kBadInput;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -32,13 +35,22 @@ void check_field(const std::vector<json>& rows, const std::string& field) {
                                near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)));
 }
 
-/// The distinct values of a field, quoted; at most eight.
-std::string listed(const std::vector<const json*>& rows, const std::string& field) {
+/// The distinct values of a field, quoted; at most eight, those nearest to the number that was wanted first.
+std::string listed(const std::vector<const json*>& rows, const std::string& field, const std::string& wanted = {}) {
   std::vector<std::string> values;
   for (const json* row : rows) {
     const std::string value = field_text(*row, field);
     if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
   }
+  const auto distance = [&](const std::string& value) {
+    double a = 0, b = 0;
+    const auto read = [](const std::string& text, double& out) {
+      return std::from_chars(text.data(), text.data() + text.size(), out).ec == std::errc{};
+    };
+    return read(value, a) && read(wanted, b) ? std::abs(a - b) : 0;
+  };
+  std::stable_sort(values.begin(), values.end(),
+                   [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
   constexpr std::size_t kMost = 8;
   const bool more = values.size() > kMost;
   if (more) values.resize(kMost);
@@ -112,7 +124,8 @@ Rows choose_rows(const std::vector<json>& rows, std::span<const Where> where, st
                  [&](const json* row) { return meets(*row, condition); });
     if (next.empty()) {
       throw InputError(fmt::format("no row has {} = {}; there are {}", condition.field,
-                                   fmt::join(condition.values, " or "), listed(left, condition.field)));
+                                   fmt::join(condition.values, " or "),
+                                   listed(left, condition.field, condition.values.front())));
     }
     left = std::move(next);
   }

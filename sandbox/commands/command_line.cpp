@@ -1,6 +1,12 @@
 #include "sandbox/commands/command_line.hpp"
 
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -65,6 +71,40 @@ void check_command_words(const CLI::App& app, int argc, char** argv, int at) {
   const std::string near = nearest_name(argv[at], names);
   throw InputError(near.empty() ? fmt::format("unknown command '{}'; there are {}", argv[at], fmt::join(names, ", "))
                                 : fmt::format("unknown command '{}'; did you mean '{}'?", argv[at], near));
+}
+
+/// The text of a number option is a number, and a finite one: CLI11 takes "" for 0 and "nan" for any range.
+std::string check_number(const CLI::Option& option, const std::string& text) {
+  const bool real = option.get_type_name().starts_with("FLOAT");
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool sound = !text.empty() && error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
+  if (!sound) return fmt::format("'{}' is not {}", text, real ? "a finite number" : "an integer");
+  if (real) return "";
+  if (value != std::floor(value) || text.find_first_of(".eE") != std::string::npos)
+    return fmt::format("'{}' is not an integer", text);
+  if (option.get_name() == "--device" && value < 0)
+    return fmt::format("'{}' is not a device's number (pellucid devices)", text);
+  return "";
+}
+
+void check_numbers(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT"))
+      option->check([option](const std::string& text) { return check_number(*option, text); });
+  }
+  for (CLI::App* child : app.get_subcommands([](const CLI::App*) { return true; }))
+    check_numbers(*child);
+}
+
+/// Prints help or the version; a full disk behind a redirection is a failure.
+int print_and_exit(const CLI::App& app, const CLI::ParseError& asked) {
+  const int status = app.exit(asked);
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0)
+    throw RuntimeError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+  return status;
 }
 
 }  // namespace
@@ -191,11 +231,12 @@ CommandLine::~CommandLine() = default;
 
 std::optional<int> CommandLine::parse(int argc, char** argv) {
   check_command_words(*app_, argc, argv, 1);
+  check_numbers(*app_);
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 prints help and version with status 0; everything else is bad usage.
-    if (error.get_exit_code() == 0) return app_->exit(error);
+    if (error.get_exit_code() == 0) return print_and_exit(*app_, error);
     throw InputError(error.what());
   }
   return std::nullopt;

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/images/picture_file.hpp"
 #include "gl/error.hpp"
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
@@ -70,7 +71,7 @@ struct Mask {
   std::string source;
 };
 
-Mask find_mask(const Options& options, const ImageFile& reference) {
+Mask find_mask(const Options& options, const PictureFile& reference) {
   const auto layer_of = [](const ImageFile& file, const std::string& name) -> const Image* {
     const auto found = file.layers.find(name);
     return found == file.layers.end() ? nullptr : &found->second;
@@ -84,16 +85,53 @@ Mask find_mask(const Options& options, const ImageFile& reference) {
     return {*layer, fmt::format("layer {} of {}", options.mask, options.reference.string())};
   std::error_code ignored;
   if (!std::filesystem::exists(options.mask, ignored)) {
-    std::vector<std::string> layers;
-    for (const auto& [name, image] : reference.layers)
-      layers.push_back(name);
+    const std::vector<std::string>& layers = reference.layer_names;
     throw InputError(fmt::format("--mask {}: neither a file nor a layer of {}, which has {}", options.mask,
                                  options.reference.string(),
                                  layers.empty() ? "none" : fmt::format("{}", fmt::join(layers, ", "))));
   }
-  ImageFile file = read_image(options.mask);
+  PictureFile file = read_picture(options.mask, [](const std::string& layer) { return layer == "mask"; });
   if (const Image* layer = layer_of(file, "mask")) return {*layer, "layer mask of " + options.mask};
   return {std::move(file.image), options.mask};
+}
+
+/// A mask that nobody asked for and that marks nothing (an opaque scene's reference, another program's layer) is left
+/// alone.
+void drop_empty_mask(const Options& options, Mask& mask, std::vector<std::string>& notes) {
+  if (!options.mask.empty() || !mask.image) return;
+  const Image& image = *mask.image;
+  bool marked = image.width < 1;
+  for (std::size_t i = 0; !marked && i < image.pixels.size(); i += static_cast<std::size_t>(image.channels))
+    marked = image.pixels[i] > 0.5F;
+  if (marked) return;
+  notes.push_back(
+      fmt::format("{} marks no pixel and is not used (--no-mask leaves it out without this note)", mask.source));
+  mask = {};
+}
+
+/// Both pictures are of one kind, size and shape of pixels.
+void check_comparable(const Options& options, const PictureFile& reference, const PictureFile& test) {
+  const auto kind = [](const PictureFile& file) { return file.display_encoded ? "display-encoded" : "scene-linear"; };
+  if (reference.display_encoded != test.display_encoded)
+    throw InputError(fmt::format("{} is {} and {} is {}: compare EXR with EXR, PNG with PNG",
+                                 options.reference.string(), kind(reference), options.test.string(), kind(test)));
+  if (reference.image.width != test.image.width || reference.image.height != test.image.height)
+    throw InputError(fmt::format("test {} is {}, but the reference {} is {}", options.test.string(), size_text(test),
+                                 options.reference.string(), size_text(reference)));
+  if (std::abs(reference.pixel_aspect - test.pixel_aspect) > 1e-4 * reference.pixel_aspect)
+    throw InputError(fmt::format("the pixels of {} are {:.4g} times as wide as high, those of {} {:.4g} times",
+                                 options.test.string(), test.pixel_aspect, options.reference.string(),
+                                 reference.pixel_aspect));
+}
+
+/// A map must not replace what is compared.
+void check_map(const Options& options) {
+  if (options.map.empty()) return;
+  if (options.map.extension() != ".png" && options.map.extension() != ".exr")
+    throw InputError(fmt::format("--map {}: the name must end in .png or .exr", options.map.string()));
+  check_output(options.map, {".png", ".exr"});
+  for (const std::filesystem::path& input : {options.reference, options.test, std::filesystem::path(options.mask)})
+    check_no_input(options.map, input, "--map");
 }
 
 std::string text_of(double value) {
@@ -137,20 +175,23 @@ ordered_json to_json(const sweeps::Comparison& comparison, const sweeps::Compari
 }
 
 int compare(const Options& options) {
-  if (!options.map.empty()) {
-    if (options.map.extension() != ".png" && options.map.extension() != ".exr")
-      throw InputError(fmt::format("--map {}: the name must end in .png or .exr", options.map.string()));
-    check_output(options.map, {".png", ".exr"});
-  }
+  check_map(options);
   const sweeps::MetricSet metrics = options.metrics.empty() ? sweeps::MetricSet() : sweeps::MetricSet(options.metrics);
-  ImageFile reference = read_image(options.reference);
-  const ImageFile test = read_image(options.test);
-  const auto kind = [](const ImageFile& file) { return file.display_encoded ? "display-encoded" : "scene-linear"; };
-  if (reference.display_encoded != test.display_encoded)
-    throw InputError(fmt::format("{} is {} and {} is {}: compare EXR with EXR, PNG with PNG",
-                                 options.reference.string(), kind(reference), options.test.string(), kind(test)));
-
-  const Mask mask = find_mask(options, reference);
+  const std::string mask_layer = options.mask.empty() ? "mask" : options.mask;
+  PictureFile reference = read_picture(
+      options.reference, [&](const std::string& layer) { return !options.no_mask && layer == mask_layer; });
+  PictureFile test = read_picture(options.test, no_layer);
+  check_comparable(options, reference, test);
+  std::vector<std::string> notes;
+  for (const auto& [file, path] : {std::pair(&reference, &options.reference), std::pair(&test, &options.test)}) {
+    encode_as_srgb(*file);
+    for (const std::string& note : file->notes)
+      notes.push_back(fmt::format("{}: {}", path->string(), note));
+  }
+  Mask mask = find_mask(options, reference);
+  drop_empty_mask(options, mask, notes);
+  for (const std::string& note : notes)
+    fmt::print(stderr, "note: {}\n", note);
   const bool display_encoded = reference.display_encoded;
   std::vector<Bound> bounds;
   for (const std::string& text : options.fail_above)
@@ -177,6 +218,7 @@ int compare(const Options& options) {
     if (bound.broken_by(result.at(bound.column))) broken.push_back(&bound);
   if (options.json) {
     ordered_json out = to_json(comparison, result, options, test.image, display_encoded, mask.source);
+    out["notes"] = notes;
     out["failed"] = ordered_json::array();
     for (const Bound* bound : broken)
       out["failed"].push_back(bound->column);
@@ -222,6 +264,8 @@ void add_compare(cli::App& root, std::vector<Command>& commands) {
       "PNG: LDR-FLIP, and the other metrics on the encoded values in [0, 1]. EXR: HDR-FLIP with the ACES curve and\n"
       "automatic exposures, and the other metrics on radiance; PSNR's peak is the largest component of the reference,\n"
       "SSIM is taken of the image clamped to [0, 1] and sRGB-encoded. Alpha is not compared.\n"
+      "Pictures are compared in the EXR's display window, 0 where nothing is stored; other primaries than Rec. 709's\n"
+      "(chromaticities) are converted, and a PNG's gamma (gAMA) to sRGB's encoding; its ICC profile is not applied.\n"
       "Example: pellucid compare truth.exr hulls.exr -m flip,rmse --map error.png --fail-above flip_mean=0.05");
   commands.push_back({app, [options] { return compare(*options); }});
 }

@@ -12,9 +12,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
+#include "gl/device_node.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"
@@ -151,6 +153,7 @@ int describe(const std::string& wanted, bool json) {
   const auto scene = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& s) { return s.name == wanted; });
   if (scene != scenes.end() || wanted.ends_with(".toml")) {
     Scene loaded = load_scene(wanted);
+    print_warnings(loaded);
     if (json) {
       ordered_json views = ordered_json::array();
       for (const View& v : loaded.views)
@@ -161,6 +164,7 @@ int describe(const std::string& wanted, bool json) {
                                       {"stand_in", loaded.stand_in},
                                       {"views", views},
                                       {"volume", volume_json(loaded)},
+                                      {"warnings", loading_facts(loaded).warnings},
                                       {"parameters", parameters_json(loaded.parameters().infos())}}
                              .dump(2));
       return kDone;
@@ -205,13 +209,15 @@ int devices(bool json) {
                      {"platform", d.platform},
                      {"vendor", d.vendor},
                      {"renderer", d.renderer},
-                     {"version", d.version}});
+                     {"version", d.version},
+                     {"node", gl::device_node(d.index)}});
     }
     fmt::print("{}\n", out.dump(2));
   } else {
     for (const gl::Device& d : found) {
-      fmt::print("{:>12}  {}, {}, OpenGL {}\n", d.index < 0 ? d.platform : fmt::format("--device {}", d.index),
-                 d.vendor, d.renderer, d.version);
+      const std::string node = gl::device_node(d.index);
+      fmt::print("{:>12}  {}, {}, OpenGL {}{}\n", d.index < 0 ? d.platform : fmt::format("--device {}", d.index),
+                 d.vendor, d.renderer, d.version, node.empty() ? "" : ", " + node);
     }
   }
   if (found.empty()) throw RuntimeError("no EGL device or platform gives an OpenGL 4.5 core context");

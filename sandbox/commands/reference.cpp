@@ -17,6 +17,8 @@
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/shadow_maps.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/images/finite.hpp"
+#include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
@@ -122,6 +124,8 @@ int reference(const Options& options) {
   const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
   const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
   Scene loaded = load_scene(options.scene);
+  check_output_is_no_input(options.output, loaded);
+  print_warnings(loaded);
   settings = sweeps::settled(settings, loaded.name, has_interfaces(loaded), loaded.volume.has_value());
   const std::map<std::string, Value> parameters = reference_parameters(options, loaded, draws);
   const Camera camera{view_of(loaded, options.view), size.width, size.height};
@@ -200,14 +204,23 @@ int reference(const Options& options) {
     file.layers["shadow"] = sweeps::shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
   }
   if (terminal) fmt::print(stderr, "\r");
+  require_finite(file.image, "reference");
   file.attributes = file_attributes("reference", recipe, origin);
   file.attributes["pellucid.reference_error"] = errors.dump();
   write_picture(options.output, file, options.display);
+  if (from_rays && exact.surfaces.lost_weight_mean > 0) {
+    fmt::print(
+        stderr,
+        "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its mesh is "
+        "open or inside out\n",
+        exact.surfaces.lost_weight_mean);
+  }
   if (tev) tev->send("reference of " + options.scene, file.image);
   if (options.json) {
     ordered_json out = recipe;
     out.update(errors);
     out["volume"] = volume_json(scene);
+    out["warnings"] = loading_facts(scene).warnings;
     out["output"] = options.output.string();
     fmt::print("{}\n", out.dump(2));
     return kDone;
@@ -226,12 +239,6 @@ int reference(const Options& options) {
         "{:.2g}, mean {:.2g}\n",
         options.output.string(), s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
         s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
-    if (s.lost_weight_mean > 0) {
-      fmt::print(stderr,
-                 "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its "
-                 "mesh is open or inside out\n",
-                 s.lost_weight_mean);
-    }
   }
   if (of_slices) {
     fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", options.output.string(),

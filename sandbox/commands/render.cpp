@@ -15,6 +15,8 @@
 
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/images/finite.hpp"
+#include "algorithms/scene/images/picture_file.hpp"
+#include "algorithms/scene/loading_facts.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/file_provenance.hpp"
@@ -52,6 +54,13 @@ Drawn draw(const Options& options, RenderSession& session, const gl::Context& co
   ImageFile file;
   file.image = session.read_color();
   require_finite(file.image, fmt::format("the frame of {}", session.technique_info().name));
+  const bool half = session.parameters().value("frame.format", "") == "half";
+  const std::size_t saturated = half ? saturated_pixels(file.image) : 0;
+  if (saturated > 0)
+    fmt::print(stderr,
+               "warning: {} pixels reach 65504, the most that the frame's 16-bit floats hold (frame.format=single "
+               "holds more)\n",
+               saturated);
 
   ordered_json recipe{
       {"scene", options.scene},          {"technique", options.technique},    {"view", session.camera().view.name},
@@ -78,11 +87,13 @@ Drawn draw(const Options& options, RenderSession& session, const gl::Context& co
   nlohmann::json errors = nlohmann::json::object();
   session.technique().native_errors(errors);
   out["native_errors"] = errors;
+  out["saturated_pixels"] = saturated;
   out["gpu_bytes"] = gl::allocated_bytes();
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   out["peak_rss_bytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
   out["volume"] = volume_json(session.scene());
+  out["warnings"] = loading_facts(session.scene()).warnings;
   out["provenance"] = origin;
   out["output"] = output.string();
   if (!options.maps.empty()) out["maps"] = drawn.maps;
@@ -117,6 +128,8 @@ int render(const Options& options) {
   std::optional<TevClient> tev;
   if (!options.tev.empty()) tev.emplace(options.tev);
   Scene scene = load_scene(options.scene);
+  check_output_is_no_input(options.output, scene);
+  print_warnings(scene);
   const gl::Context context({.device = options.device});
   RenderSession session(std::move(scene), options.technique, options.view, size.width, size.height);
   for (const std::string& setting : options.settings) {

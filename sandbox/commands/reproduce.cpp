@@ -62,7 +62,7 @@ void add_reproduce(cli::App& root, std::vector<Command>& commands) {
          fmt::format("Largest difference of a channel that a file made again on the same device and commit may "
                      "show, else status 3; {} without it",
                      FileOptions{}.tolerance))
-      ->check(cli::NonNegativeNumber);
+      ->check(cli::Range(0.0, 1e9));
   app->add_flag("--json", options->json, "Print what came out as JSON");
   app->footer(
       "A paper: its sweeps are measured, its tables, figures and pictures made, and DIR/index.html shows them all. "

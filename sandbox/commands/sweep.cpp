@@ -229,7 +229,8 @@ void add_sweep(cli::App& root, std::vector<Command>& commands) {
   run_app->add_flag("--preview", running->preview, "the spec as its [preview] changes it: a quick run");
   run_app->add_flag("--dry-run", running->dry_run, "expand and check the spec, print its points, draw nothing");
   run_app->add_option("--device", running->device, "EGL device of the workers (pellucid devices)");
-  run_app->add_option("--limit", running->limit, "stop after so many points")->check(cli::PositiveNumber);
+  run_app->add_option("--limit", running->limit, "stop after so many points")
+      ->check(cli::Range(std::size_t{1}, std::size_t{1} << 30));
   run_app->add_flag("--retry-failed", running->retry_failed, "measure points again that are recorded as failed");
   run_app->add_flag("--quiet", running->quiet, "no progress");
   run_app->add_flag("--json", running->as_json, "print the summary (with --dry-run: the points) as JSON");

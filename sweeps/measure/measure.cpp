@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "algorithms/scene/images/picture_file.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
@@ -133,6 +134,8 @@ void Measurer::time_passes(Measurement& result) {
 void Measurer::compare(const Point& point, const std::filesystem::path& references, Measurement& result) {
   const Image color = session_->read_color();
   require_finite(color, "the frame");
+  if (session_->parameters().value("frame.format", "") == "half")
+    result.row["saturated_pixels"] = saturated_pixels(color);
   session_->technique().native_errors(result.row);
   if (point.metrics.empty()) return;
   if (!references_ || references_->folder() != references) references_ = std::make_unique<ReferenceCache>(references);

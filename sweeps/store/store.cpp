@@ -142,6 +142,10 @@ struct Store::State {
 };
 
 Store::Store(const std::filesystem::path& path, Access access) {
+  // SQLite's own names for stores that are gone when they are closed.
+  if (const std::string name = path.string(); name.empty() || name == ":memory:" || name.starts_with("file:"))
+    throw InputError(
+        fmt::format("store '{}' would forget its rows; give a file's name (./{} for one called so)", name, name));
   if (access == Access::write) {
     std::error_code error;
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");

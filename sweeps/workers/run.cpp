@@ -43,6 +43,8 @@ std::string outcome_text(const json& row) {
   if (row.contains("frame_ms_median")) {
     text = fmt::format("{:.3g} ms", row.at("frame_ms_median").get<double>());
     if (row.value("timing", "") == "unconverged") text += " (unconverged)";
+    if (const auto saturated = row.value("saturated_pixels", 0); saturated > 0)
+      text += fmt::format(" ({} pixels saturate 16-bit floats)", saturated);
   }
   for (const char* metric : {"flip_mean", "rmse"}) {
     if (row.contains(metric))

@@ -18,8 +18,10 @@ inline void require_finite(const Image& image, std::string_view what) {
     if (std::isfinite(image.pixels[i])) continue;
     const auto channels = static_cast<std::size_t>(image.channels), width = static_cast<std::size_t>(image.width);
     const std::size_t pixel = i / channels;
-    throw RuntimeError(fmt::format("{} has a value that is not finite ({}) at pixel ({}, {}), channel {}", what,
-                                   image.pixels[i], pixel % width, pixel / width, i % channels));
+    throw RuntimeError(fmt::format("{} has a value that is not finite ({}{}) at pixel ({}, {}), channel {}", what,
+                                   image.pixels[i],
+                                   std::isinf(image.pixels[i]) ? "; 16-bit floats hold up to 65504" : "", pixel % width,
+                                   pixel / width, i % channels));
   }
 }
 

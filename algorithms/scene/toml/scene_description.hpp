@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/motion.hpp"
 #include "algorithms/scene/relief/patterns.hpp"
 #include "algorithms/scene/scene.hpp"
@@ -151,8 +154,7 @@ struct VolumeDescription {
   double near_m = 0.05, range_m = 1;
   double seed = 1, octaves = 4, frequency = 3, height_falloff = 3, contrast = 0.7, swirl = 0.5;
   double depth_gradient = 0.3, level = 0.9, wave = 0.01;
-  std::optional<VolumeFile> from_file;  ///< normalised; its values are moved into the scene when it is evaluated
-  glm::dvec2 file_range{0.0, 1.0};
+  std::optional<Densities> from_file;  ///< its values are moved into the scene when it is evaluated
 };
 
 struct EnvironmentDescription {
@@ -188,6 +190,10 @@ struct SceneDescription {
   std::vector<DriveTarget> targets;
   std::vector<Affected> animated;                               ///< what changes with time
   std::vector<std::pair<std::string, std::string>> files_read;  ///< name in the scene file, SHA-256
+  LoadingFacts facts;
+
+  /// Adds the warning "s.toml:3:8: environment.image: …".
+  void warn(const TableReader&, std::string_view key, std::string_view message);
 
   SceneDescription() = default;
   SceneDescription(const SceneDescription&) = delete;
