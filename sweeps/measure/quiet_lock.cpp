@@ -1,0 +1,40 @@
+#include "sweeps/measure/quiet_lock.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "gl/error.hpp"
+
+namespace pellucid::sweeps {
+
+QuietLock::QuietLock(const std::filesystem::path& file) {
+  if (file.empty()) return;
+  file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (file_ < 0) throw RuntimeError(fmt::format("'{}' cannot be made: {}", file.string(), std::strerror(errno)));
+}
+
+QuietLock::~QuietLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void QuietLock::take(int kind) {
+  while (file_ >= 0 && ::flock(file_, kind) != 0 && errno == EINTR) {
+  }
+}
+
+void QuietLock::wait_to_work() {
+  take(LOCK_EX);
+}
+void QuietLock::wait_to_time() {
+  take(LOCK_SH);
+}
+void QuietLock::release() {
+  take(LOCK_UN);
+}
+
+}  // namespace pellucid::sweeps
