@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   sandbox::add_bench(root, commands);
   sandbox::add_plot(root, commands);
   sandbox::add_reproduce(root, commands);
+  sandbox::add_bundle(root, commands);
 
   try {
     check_command_words(root, argc, argv, 1);
