@@ -12,6 +12,8 @@
 
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sandbox/commands/sweep_dry_run.hpp"
+#include "sweeps/cluster/slurm.hpp"
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/spec/spec.hpp"
 #include "sweeps/store/store.hpp"
@@ -29,108 +31,47 @@ using namespace pellucid::sweeps;
 struct SweepArguments {
   std::string spec;
   std::string store;
-  std::optional<int> device;
+  std::string shard, references, only;
+  std::vector<int> devices;
   std::size_t limit = 0;
-  bool dry_run = false, retry_failed = false, quiet = false, as_json = false;
+  std::size_t fail_after = 0;
+  bool dry_run = false, list = false, retry_failed = false, quiet = false, as_json = false;
 };
 
-/// What a store holds of a plan's points; empty when there is no store yet.
-std::map<std::string, StoredPoint> stored_points(const std::string& path) {
-  std::map<std::string, StoredPoint> result;
-  std::error_code error;
-  if (path.empty() || !std::filesystem::exists(path, error)) return result;
-  for (StoredPoint& point : Store(path, Access::read).points())
-    result.emplace(point.id, std::move(point));
-  return result;
-}
-
-std::vector<BlockStatus> count_blocks(const Spec& spec, const Plan& plan,
-                                      const std::map<std::string, StoredPoint>& stored) {
-  std::vector<BlockStatus> blocks;
-  for (const Member& member : plan.members) {
-    if (blocks.empty() || blocks.back().block != member.block) blocks.push_back({spec.name, member.block, 0, 0, 0});
-    BlockStatus& status = blocks.back();
-    ++status.planned;
-    const auto found = stored.find(plan.points[member.point].id);
-    if (found != stored.end()) ++(found->second.failed ? status.failed : status.done);
-  }
-  return blocks;
-}
-
-void print_status(const std::vector<BlockStatus>& blocks, bool as_json) {
-  if (as_json) {
-    json out = json::array();
-    for (const BlockStatus& b : blocks) {
-      out.push_back({{"sweep", b.sweep},
-                     {"block", b.block},
-                     {"planned", b.planned},
-                     {"done", b.done},
-                     {"failed", b.failed},
-                     {"left", b.left()}});
-    }
-    fmt::print("{}\n", out.dump(2));
-    return;
-  }
-  std::size_t width = 5;
-  for (const BlockStatus& b : blocks)
-    width = std::max({width, b.block.size(), b.sweep.size()});
-  fmt::print("{:{}}  {:{}}  {:>7}  {:>7}  {:>7}  {:>7}\n", "sweep", width, "block", width, "planned", "done", "failed",
-             "left");
-  BlockStatus total;
+json blocks_json(const std::vector<BlockStatus>& blocks) {
+  json out = json::array();
   for (const BlockStatus& b : blocks) {
-    fmt::print("{:{}}  {:{}}  {:>7}  {:>7}  {:>7}  {:>7}\n", b.sweep, width, b.block, width, b.planned, b.done,
-               b.failed, b.left());
-    total.planned += b.planned;
-    total.done += b.done;
-    total.failed += b.failed;
+    out.push_back({{"sweep", b.sweep},
+                   {"block", b.block},
+                   {"planned", b.planned},
+                   {"done", b.done},
+                   {"failed", b.failed},
+                   {"left", b.left()}});
+    if (!b.device.empty()) out.back()["device"] = b.device;
   }
-  if (blocks.size() > 1) {
-    fmt::print("{:{}}  {:{}}  {:>7}  {:>7}  {:>7}  {:>7}\n", "", width, "total", width, total.planned, total.done,
-               total.failed, total.left());
-  }
+  return out;
 }
 
-/// The points, the blocks and how long it may take, without GL.
-int dry_run(const Spec& spec, const Plan& plan, const SweepArguments& arguments) {
-  const auto stored = stored_points(arguments.store);
-  double known_s = 0;
-  std::size_t known = 0;
-  std::size_t left = 0;
-  double limit_s = 0;
-  for (const Point& point : plan.points) {
-    if (const auto found = stored.find(point.id); found != stored.end()) {
-      known_s += found->second.wall_s;
-      ++known;
-      continue;
-    }
-    ++left;
-    if (point.timing.enabled) limit_s += point.timing.max_seconds;
+/// Where the wall time of a store's runs went, a line for each sweep and device.
+void print_runs(const std::vector<RunRecord>& runs) {
+  std::map<std::string, RunRecord> sums;
+  for (const RunRecord& run : runs) {
+    RunRecord& sum = sums[fmt::format("{} on {}", run.sweep, run.device)];
+    sum.wall_s += run.wall_s;
+    sum.measuring_s += run.measuring_s;
+    sum.starting_s += run.starting_s;
+    sum.storing_s += run.storing_s;
+    sum.points += run.points;
   }
-  if (arguments.as_json) {
-    json points = json::array();
-    for (const std::size_t index : plan.order) {
-      json point = point_to_json(plan.points[index]);
-      point["repeat"] = repeat_command(plan.points[index]);
-      point["stored"] = stored.contains(plan.points[index].id);
-      points.push_back(std::move(point));
-    }
-    fmt::print("{}\n", points.dump(2));
-    return kDone;
+  for (const auto& [name, sum] : sums) {
+    if (!(sum.wall_s > 0)) continue;
+    const double rest_s = std::max(0.0, sum.wall_s - sum.measuring_s - sum.starting_s - sum.storing_s);
+    fmt::print(
+        "{}: {} points in {}: {:.1f} % drawing, timing and measuring; {:.1f} s starting workers, {:.1f} s storing, "
+        "{:.1f} s else\n",
+        name, sum.points, duration_text(sum.wall_s), 100 * sum.measuring_s / sum.wall_s, sum.starting_s, sum.storing_s,
+        rest_s);
   }
-  for (const std::size_t index : plan.order) {
-    const Point& point = plan.points[index];
-    fmt::print("{} {}{}\n", point.id, repeat_command(point), stored.contains(point.id) ? "  # stored" : "");
-  }
-  fmt::print("\n");
-  print_status(count_blocks(spec, plan, stored), false);
-  fmt::print("\n{} distinct points, {} to measure", plan.points.size(), left);
-  if (known > 0 && left > 0) {
-    fmt::print("; about {} at the stored points' pace",
-               duration_text(known_s / static_cast<double>(known) * static_cast<double>(left)));
-  }
-  if (limit_s > 0) fmt::print("; at most {} of timing", duration_text(limit_s));
-  fmt::print("\n");
-  return kDone;
 }
 
 int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArguments& arguments) {
@@ -138,6 +79,8 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
     const json drift = summary.baseline_drift ? json(*summary.baseline_drift) : json();
     fmt::print("{}\n", json{{"sweep", spec.name},
                             {"store", arguments.store},
+                            {"shard", arguments.shard.empty() ? json() : json(arguments.shard)},
+                            {"device", summary.device},
                             {"planned", summary.planned},
                             {"reused", summary.reused},
                             {"measured", summary.measured},
@@ -145,6 +88,7 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
                             {"unconverged", summary.unconverged},
                             {"left", summary.left},
                             {"interrupted", summary.interrupted},
+                            {"gave_up", summary.gave_up},
                             {"baseline_drift_max", drift},
                             {"wall_s", summary.wall_s}}
                            .dump(2));
@@ -152,14 +96,23 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
   std::string line;
   const auto add = [&](const std::string& text) { line += (line.empty() ? "" : ", ") + text; };
   if (summary.measured > 0) add(fmt::format("{} measured", summary.measured));
-  if (summary.reused > 0) add(fmt::format("{} in the store already", summary.reused));
+  if (summary.reused > 0) {
+    add(fmt::format(
+        "{} in the store already{}", summary.reused,
+        summary.measured + summary.failed == 0 && !summary.device.empty() ? ", measured on " + summary.device : ""));
+  }
   if (summary.unconverged > 0) add(fmt::format("{} unconverged", summary.unconverged));
   if (summary.failed > 0) add(fmt::format("{} failed", summary.failed));
   if (summary.left > 0) add(fmt::format("{} left", summary.left));
   if (summary.baseline_drift) add(fmt::format("baseline drift at most {:.1f} %", 100 * *summary.baseline_drift));
   const bool worked = summary.measured + summary.failed > 0;
-  fmt::print(stderr, "{}{}: {} points: {}{} in {}\n", summary.interrupted ? "interrupted: " : "", spec.name,
-             summary.planned, line, worked ? fmt::format("; {}", duration_text(summary.wall_s)) : "", arguments.store);
+  const std::string part = arguments.shard.empty() ? "" : fmt::format(" (shard {})", arguments.shard);
+  fmt::print(stderr, "{}{}{}: {} points: {}{} in {}\n",
+             summary.interrupted ? "interrupted: "
+             : summary.gave_up   ? "gave up: "
+                                 : "",
+             spec.name, part, summary.planned, line, worked ? fmt::format("; {}", duration_text(summary.wall_s)) : "",
+             arguments.store);
   if (summary.left > 0) fmt::print(stderr, "the same command goes on where this one stopped\n");
   return summary.interrupted || summary.failed > 0 ? kFailed : kDone;
 }
@@ -167,24 +120,98 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
 int run(const SweepArguments& arguments) {
   const Spec spec = load_spec(arguments.spec);
   const Plan plan = make_plan(spec);
-  if (arguments.dry_run) return dry_run(spec, plan, arguments);
+  if (arguments.list && !arguments.dry_run) throw InputError("--list is of --dry-run");
+  if (arguments.dry_run) {
+    if (arguments.as_json) {
+      print_dry_run_json(plan, arguments.store);
+    } else {
+      print_dry_run(spec, plan, arguments.store, arguments.list);
+    }
+    return kDone;
+  }
   if (arguments.store.empty()) throw InputError("--store S.db is missing: where the rows go");
   RunOptions options;
-  options.device = arguments.device;
+  options.devices = arguments.devices;
+  if (!arguments.shard.empty()) options.shard = parse_shard(arguments.shard);
+  if (!arguments.references.empty()) options.references = arguments.references;
+  if (!arguments.only.empty()) options.timed = arguments.only == "timed";
   options.limit = arguments.limit;
+  options.fail_after = arguments.fail_after;
   options.retry_failed = arguments.retry_failed;
   options.quiet = arguments.quiet;
   return print_summary(spec, run_sweep(spec, plan, arguments.store, options), arguments);
 }
 
+/// Traces all references into one folder, before shards that share it.
+int references(const SweepArguments& arguments) {
+  const Spec spec = load_spec(arguments.spec);
+  RunOptions options;
+  options.devices = arguments.devices;
+  options.quiet = arguments.quiet;
+  const ReferencesSummary summary = trace_references(spec, make_plan(spec), arguments.references, options);
+  fmt::print(stderr, "{}{}: {} references: {} in {}, {} failed\n", summary.interrupted ? "interrupted: " : "",
+             spec.name, summary.planned, summary.done, arguments.references, summary.failures.size());
+  return summary.interrupted || !summary.failures.empty() ? kFailed : kDone;
+}
+
+/// Queue and progress of a folder that `sweep slurm` made.
+int cluster_status(const std::filesystem::path& folder, bool as_json) {
+  json jobs = json::object();
+  for (const auto& [name, id] : slurm_jobs(folder)) {
+    const auto states = slurm_states(id);
+    jobs[name] = {{"id", id}, {"tasks", states}};
+    std::string text;
+    for (const auto& [state, tasks] : states)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", tasks, state);
+    if (!as_json) fmt::print("{:12} {:>10}  {}\n", name, id, text.empty() ? "over" : text);
+  }
+  std::map<std::string, BlockStatus> sums;
+  std::vector<std::string> order;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "shards", error)) {
+    if (entry.path().extension() != ".db") continue;
+    for (const BlockStatus& block : Store(entry.path(), Access::read).status()) {
+      const auto [at, is_new] = sums.try_emplace(block.sweep + " " + block.block + " " + block.device, block);
+      if (is_new) order.push_back(at->first);
+      if (is_new) continue;
+      at->second.done += block.done;
+      at->second.failed += block.failed;
+    }
+  }
+  if (error) throw InputError(fmt::format("'{}' is no folder of `sweep slurm`", folder.string()));
+  std::vector<BlockStatus> blocks;
+  for (const std::string& key : order)
+    blocks.push_back(sums.at(key));
+  if (as_json) {
+    fmt::print("{}\n", json{{"jobs", jobs}, {"blocks", blocks_json(blocks)}}.dump(2));
+  } else {
+    fmt::print("\n");
+    print_blocks(blocks);
+  }
+  return kDone;
+}
+
 int status(const SweepArguments& arguments) {
+  std::error_code error;
+  if (arguments.store.empty() && std::filesystem::is_directory(arguments.spec, error))
+    return cluster_status(arguments.spec, arguments.as_json);
+  std::vector<BlockStatus> blocks;
+  std::vector<RunRecord> runs;
   if (arguments.store.empty()) {
-    print_status(Store(arguments.spec, Access::read).status(), arguments.as_json);
+    const Store store(arguments.spec, Access::read);
+    blocks = store.status();
+    runs = store.runs();
+  } else {
+    const Spec spec = load_spec(arguments.spec);
+    blocks = count_blocks(spec, make_plan(spec), stored_points(arguments.store));
+  }
+  if (arguments.as_json) {
+    fmt::print("{}\n", blocks_json(blocks).dump(2));
     return kDone;
   }
-  const Spec spec = load_spec(arguments.spec);
-  const auto stored = stored_points(arguments.store);
-  print_status(count_blocks(spec, make_plan(spec), stored), arguments.as_json);
+  print_blocks(blocks);
+  if (!runs.empty()) fmt::print("\n");
+  print_runs(runs);
   return kDone;
 }
 
@@ -199,9 +226,21 @@ void add_sweep(CLI::App& root, std::vector<Command>& commands) {
   CLI::App* run_app = sweep->add_subcommand("run", "Measure every point of a spec that the store does not hold");
   run_app->add_option("spec", running->spec, "a file SPEC.toml, or the name of a built-in spec")->required();
   run_app->add_option("--store", running->store, "SQLite file that rows go to; made when missing");
-  run_app->add_flag("--dry-run", running->dry_run, "expand and check the spec, print its points, draw nothing");
-  run_app->add_option("--device", running->device, "EGL device of the workers (pellucid devices)");
+  run_app->add_flag("--dry-run", running->dry_run, "expand and check the spec, count its points, draw nothing");
+  run_app->add_flag("--list", running->list, "with --dry-run: print every point");
+  run_app
+      ->add_option("--device", running->devices,
+                   "EGL device of the worker (pellucid devices), or several of one model: --device 0,1,3")
+      ->delimiter(',');
+  run_app->add_option("--shard", running->shard,
+                      "measure only part i of N, as --shard 2/16; `sweep merge` joins the stores");
+  run_app->add_option("--only", running->only, "measure only points that are timed, or untimed")
+      ->check(CLI::IsMember({"timed", "untimed"}));
+  run_app->add_option("--references", running->references,
+                      "folder of traced references, which several sweeps may share (default: STORE.references)");
   run_app->add_option("--limit", running->limit, "stop after so many points")->check(CLI::PositiveNumber);
+  run_app->add_option("--fail-after", running->fail_after, "give up when so many points have failed")
+      ->check(CLI::PositiveNumber);
   run_app->add_flag("--retry-failed", running->retry_failed, "measure points again that are recorded as failed");
   run_app->add_flag("--quiet", running->quiet, "no progress");
   run_app->add_flag("--json", running->as_json, "print the summary (with --dry-run: the points) as JSON");
@@ -209,23 +248,44 @@ void add_sweep(CLI::App& root, std::vector<Command>& commands) {
       "Examples:\n"
       "  pellucid sweep run sampling_hulls_table1 --store results/hulls.db\n"
       "  pellucid sweep run my.toml --dry-run\n"
+      "  pellucid sweep run my.toml --store part2.db --shard 2/4\n"
       "A sweep that was stopped or killed goes on when it is run again. Status 1: interrupted, or a point failed.");
   commands.push_back({run_app, [running] { return run(*running); }});
 
+  auto tracing = std::make_shared<SweepArguments>();
+  CLI::App* references_app =
+      sweep->add_subcommand("references", "Trace the references of a spec's points, for sweeps that share them");
+  references_app->add_option("spec", tracing->spec, "a file SPEC.toml, or the name of a built-in spec")->required();
+  references_app->add_option("--references", tracing->references, "the folder; what it holds is not traced again")
+      ->required();
+  references_app->add_option("--device", tracing->devices, "EGL device of the worker (pellucid devices)");
+  references_app->add_flag("--quiet", tracing->quiet, "no progress");
+  references_app->footer(
+      "Example: pellucid sweep references my.toml --references shared/references\n"
+      "then, on each machine: pellucid sweep run my.toml --store part1.db --shard 1/4 --references shared/references");
+  commands.push_back({references_app, [tracing] { return references(*tracing); }});
+
   auto asking = std::make_shared<SweepArguments>();
   CLI::App* status_app = sweep->add_subcommand("status", "Count the points that are done, failed and left, by block");
-  status_app->add_option("store_or_spec", asking->spec, "a store; with --store, a spec")->required();
+  status_app->add_option("store_or_spec", asking->spec, "a store, or a folder of `sweep slurm`; with --store, a spec")
+      ->required();
   status_app->add_option("--store", asking->store, "the store to count a spec's points in");
   status_app->add_flag("--json", asking->as_json, "print JSON");
   status_app->footer(
       "Examples:\n  pellucid sweep status results/hulls.db\n  pellucid sweep status my.toml --store my.db --json");
   commands.push_back({status_app, [asking] { return status(*asking); }});
 
+  add_sweep_merge(*sweep, commands);
+  add_sweep_questions(*sweep, commands);
+  add_sweep_slurm(*sweep, commands);
+
   auto device = std::make_shared<std::optional<int>>();
+  auto quiet = std::make_shared<std::string>();
   CLI::App* worker_app = root.add_subcommand("worker", "Measure the points that `sweep run` sends");
   worker_app->group("");  // not for people
   worker_app->add_option("--device", *device, "EGL device");
-  commands.push_back({worker_app, [device] { return run_worker(*device); }});
+  worker_app->add_option("--quiet-lock", *quiet, "file that the workers of several devices share");
+  commands.push_back({worker_app, [device, quiet] { return run_worker(*device, *quiet); }});
 }
 
 }  // namespace pellucid::sandbox
