@@ -62,7 +62,8 @@ LookupSettings lookup_settings(const Parameters& p) {
           .bare = false,
           .bounces = p.bounces,
           .internal = p.internal_reflections,
-          .proxy_radius_m = 0};
+          .proxy_radius_m = 0,
+          .translucency = translucency_settings(p.transfer)};
 }
 
 const ParameterTable& table() {

@@ -29,6 +29,7 @@ struct Parameters {
   int bounces = 2;
   int refractor_size = 256;
   int internal_reflections = 2;
+  Transfer transfer = Transfer::gaussian;
   bool caustics = false;
   int caustic_size = 64;
   int light_map_size = 256;
@@ -111,6 +112,12 @@ struct Parameters {
                                         .doc = "reflections inside an object, after which all that is left leaves; "
                                                "with 2 bounces",
                                         .when = Change::program});
+    visit(PARAM(transfer),
+          {.cite = "Chan and Wang 2005, Sec. 3.3",
+           .doc = "what stands for the transmission of a scattering medium, with 2 bounces: nothing, a "
+                  "Gaussian and a constant, these with the unscattered part apart, or two Gaussians",
+           .when = Change::precompute,
+           .choices = kTransfers});
     visit(PARAM(caustics), {.cite = "Sec. 5",
                             .doc = "land the light of shadow-casting lights that the objects send on",
                             .when = Change::precompute});

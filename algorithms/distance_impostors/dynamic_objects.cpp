@@ -35,7 +35,8 @@ Bounds opaque_bounds(const Scene& scene) {
 
 }  // namespace
 
-void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bool refractors, const char* technique) {
+void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, const LookupSettings& lookup,
+                             const char* technique) {
   objects_.clear();
   refractors_.clear();
   extents_.clear();
@@ -52,11 +53,12 @@ void DynamicObjects::prepare(const Scene& scene, const MapSettings& settings, bo
     const Bounds bounds = mesh_bounds(mesh);
     if (!extents_.contains(instance.mesh))
       extents_[instance.mesh] = {0.5F * (bounds.min + bounds.max), 0.5F * (bounds.max - bounds.min), closed(mesh)};
-    if (!refractors || material_of(scene, object.instance).kind != SurfaceKind::dielectric) continue;
+    if (lookup.bounces < 2 || material_of(scene, object.instance).kind != SurfaceKind::dielectric) continue;
     const auto [at, made] = refractors_.try_emplace(instance.mesh, mesh, settings.refractor_size, settings.layers);
     object.refractor = &at->second;
     if (made && !at->second.shape().exact()) warnings_.push_back(describe(mesh.name, at->second.shape()));
   }
+  if (lookup.translucency && lookup.bounces > 1) translucency_.prepare(scene, *lookup.translucency);
   if (objects_.empty())
     throw InputError(fmt::format("{}: scene '{}' has no mirror, metal or dielectric", technique, scene.name));
   const Bounds proxy = opaque_bounds(scene);
@@ -140,9 +142,7 @@ void DynamicObjects::draw_mutual(const Scene& scene, const ForwardPass& forward,
       cube.target().draw(settings.layers, [&](int face) {
         for (std::size_t j = 0; j < objects_.size(); ++j) {
           if (j == i) continue;
-          const gl::Program& shade =
-              program(material_of(scene, objects_[j].instance).kind, Use::cube, settings, lookup);
-          bind(scene, objects_[j], lookup, shade);
+          const gl::Program& shade = bound(scene, objects_[j], Use::cube, settings, lookup);
           cull(scene, objects_[j], cube.camera().center);
           draw_cube_object(forward, scene, objects_[j].instance, cube.camera(), face, shade);
         }
@@ -187,8 +187,7 @@ void DynamicObjects::shade(const Scene& scene, const Camera& camera, const Targe
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const auto area = seen(scene, objects_[i], camera);
     if (!area) continue;
-    const gl::Program& shading = program(material_of(scene, objects_[i].instance).kind, Use::frame, settings, lookup);
-    bind(scene, objects_[i], lookup, shading);
+    const gl::Program& shading = bound(scene, objects_[i], Use::frame, settings, lookup);
     pixels_.bind(shading, camera, static_cast<int>(i) + 1);
     shading.use();
     pixels_.fill(*area);
@@ -208,8 +207,7 @@ void DynamicObjects::draw_report(const Scene& scene, const ForwardPass& forward,
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LEQUAL);
-  const gl::Program& shade = program(material_of(scene, object.instance).kind, Use::report, settings, lookup);
-  bind(scene, object, lookup, shade);
+  const gl::Program& shade = bound(scene, object, Use::report, settings, lookup);
   shade.set("eye", camera.view.eye);
   forward.draw_instance(scene, object.instance, camera.projection() * camera.world_to_view(), shade);
 }
@@ -230,9 +228,23 @@ gl::Defines DynamicObjects::defines(SurfaceKind kind, const LookupSettings& look
   return defines;
 }
 
-const gl::Program& DynamicObjects::program(SurfaceKind kind, Use use, const MapSettings& settings,
+const gl::Program& DynamicObjects::bound(const Scene& scene, const Object& object, Use use, const MapSettings& settings,
+                                         const LookupSettings& lookup) {
+  const Material& material = material_of(scene, object.instance);
+  const gl::Program& result = program(scene, material.kind, use, settings, lookup);
+  bind(scene, object, lookup, result);
+  if (use != Use::report && object.refractor != nullptr && lookup.translucency)
+    translucency_.bind(result, scene, material);
+  return result;
+}
+
+const gl::Program& DynamicObjects::program(const Scene& scene, SurfaceKind kind, Use use, const MapSettings& settings,
                                            const LookupSettings& lookup) {
   gl::Defines wanted = defines(kind, lookup);
+  if (use != Use::report && kind == SurfaceKind::dielectric && lookup.bounces > 1 && lookup.translucency) {
+    const gl::Defines medium = Translucency::defines(scene);
+    wanted.insert(wanted.end(), medium.begin(), medium.end());
+  }
   if (use == Use::cube) {
     if (settings.store == DistanceStore::alpha) wanted.emplace_back("DISTANCE_IN_ALPHA", "1");
     wanted.emplace_back("LAYERS", fmt::to_string(static_cast<int>(settings.layers)));

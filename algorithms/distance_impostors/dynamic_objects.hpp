@@ -12,6 +12,7 @@
 #include "algorithms/distance_impostors/object_pixels.hpp"
 #include "algorithms/distance_impostors/refractor_map.hpp"
 #include "algorithms/raster/forward_pass.hpp"
+#include "algorithms/raster/translucency.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/timer.hpp"
 
@@ -38,9 +39,9 @@ class DynamicObjects {
     std::uint64_t frames = 0;
   };
 
-  /// Drops the maps, finds the optical objects and, with `refractors`, makes their refractor maps. Throws InputError
+  /// Drops the maps, finds the optical objects and, for two refractions, makes their refractor maps. Throws InputError
   /// when there is no such object.
-  void prepare(const Scene&, const MapSettings&, bool refractors, const char* technique);
+  void prepare(const Scene&, const MapSettings&, const LookupSettings&, const char* technique);
 
   /// Draws the maps that are due; returns the indices of their objects.
   std::vector<std::size_t> due(const Scene&, const MapSettings&);
@@ -72,7 +73,9 @@ class DynamicObjects {
 
  private:
   enum class Use { frame, cube, report };
-  const gl::Program& program(SurfaceKind, Use, const MapSettings&, const LookupSettings&);
+  /// The shader of an object for a use, with the object bound.
+  const gl::Program& bound(const Scene&, const Object&, Use, const MapSettings&, const LookupSettings&);
+  const gl::Program& program(const Scene&, SurfaceKind, Use, const MapSettings&, const LookupSettings&);
   glm::vec3 center(const Scene&, const Object&) const;
   /// Leaves out the far side of a closed object that the eye is not in: a software rasteriser would shade it.
   void cull(const Scene&, const Object&, const glm::vec3& eye) const;
@@ -95,6 +98,7 @@ class DynamicObjects {
     gl::Program program;
   };
   std::map<std::pair<SurfaceKind, Use>, Compiled> programs_;
+  Translucency translucency_;
   std::optional<gl::PassTimer> cost_timer_;  // a technique is made without a context
   Cost cost_;
 };

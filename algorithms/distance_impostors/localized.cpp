@@ -10,7 +10,7 @@ namespace pellucid::distance_impostors {
 void Localized::prepare(const Scene& scene, const MapSettings& maps, const LookupSettings& lookup,
                         const CausticSettings& caustics) {
   frame_.reset();
-  objects_.prepare(scene, maps, lookup.bounces > 1, technique_);
+  objects_.prepare(scene, maps, lookup, technique_);
   for (const std::string& warning : objects_.warnings())
     fmt::print(stderr, "warning: {}\n", warning);
   caustic_settings_ = caustics;

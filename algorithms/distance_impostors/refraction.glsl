@@ -25,6 +25,9 @@ vec3 inner_hit(vec3 position, vec3 R, out vec3 outward) {
 // leaves, and where it is beyond the critical angle it leaves along the reflected ray.
 struct InnerPath {
   vec3 position, direction, throughput;
+#ifdef SCATTERING
+  float length;  // of the way so far [m]; what absorbs is left to translucency.glsl
+#endif
 };
 void leave(inout InnerPath path, vec3 outward, bool last, out vec3 exit_direction, out vec3 exit_weight) {
   float cosine = dot(path.direction, outward);
@@ -43,7 +46,11 @@ void leave(inout InnerPath path, vec3 outward, bool last, out vec3 exit_directio
 #ifdef REFRACTOR
 void go_on(inout InnerPath path, out vec3 outward) {
   vec3 at = inner_hit(path.position, path.direction, outward);
+#ifdef SCATTERING
+  path.length += distance(at, path.position);
+#else
   path.throughput *= transmitted(absorption, distance(at, path.position));
+#endif
   path.position = at;
 }
 #endif

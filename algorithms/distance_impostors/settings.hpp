@@ -1,9 +1,12 @@
 #pragma once
 
+#include <optional>
+
 #include <glm/glm.hpp>
 
 #include "algorithms/distance_impostors/hit_search.hpp"
 #include "algorithms/raster/cube_pass.hpp"
+#include "algorithms/raster/translucency.hpp"
 
 /// What distance_impostors and its baseline environment_map have in common, apart from how each declares it.
 namespace pellucid::distance_impostors {
@@ -52,6 +55,8 @@ struct LookupSettings {
   int bounces = 2;           ///< refractions
   int internal = 2;          ///< reflections inside, after which all that is left leaves
   float proxy_radius_m = 0;  ///< 0: the mean half side of the box
+  /// Of scattering media, with two refractions; none: only absorption acts.
+  std::optional<TranslucencySettings> translucency{};
 };
 
 }  // namespace pellucid::distance_impostors

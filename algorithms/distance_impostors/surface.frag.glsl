@@ -4,6 +4,11 @@
 #include "algorithms/shaders/optics.glsl"
 #if KIND == 3
 #include "algorithms/distance_impostors/refraction.glsl"
+#ifdef SCATTERING
+vec3 leaves_at;  // where the light in question leaves
+vec3 sharp_radiance(vec3 direction) { return incoming(leaves_at, direction); }
+#include "algorithms/shaders/translucency.glsl"
+#endif
 #endif
 
 #if KIND != 3
@@ -18,24 +23,45 @@ layout(location = 0) out vec4 radiance;
 layout(location = 1) out vec4 eye_distance_m;
 
 #if KIND == 3
+#ifdef SCATTERING
+vec3 returned = vec3(0.0);  // what the medium has sent back of the path so far
+#endif
+
+// The light of what leaves a path at an interface.
+vec3 left(inout InnerPath path, vec3 outward, bool last) {
+  vec3 before = path.throughput, exit_direction, exit_weight;
+  leave(path, outward, last, exit_direction, exit_weight);
+#ifdef SCATTERING
+  if (before.x <= 0.0) return vec3(0.0);
+  leaves_at = path.position;
+  return before.x * translucent(extinction * path.length, exit_direction, exit_weight.x / before.x, returned);
+#else
+  return exit_weight * incoming(path.position, exit_direction);
+#endif
+}
+
 vec3 dielectric(vec3 V, vec3 n, bool inside) {
   float cosine = min(abs(dot(V, n)), 1.0);
   vec3 light = vec3(0.0);
   InnerPath path;
   path.position = world_position;
   path.throughput = vec3(1.0);
-  vec3 exit_direction, exit_weight;
+#ifdef SCATTERING
+  path.length = 0.0;
+#endif
   if (inside) {  // the eye is in the object: this is already where a path leaves
     path.direction = V;
+#ifdef SCATTERING
+    path.length = distance(eye, world_position);
+#else
     path.throughput = transmitted(absorption, distance(eye, world_position));
-    leave(path, -n, INTERNAL == 0, exit_direction, exit_weight);
-    light += exit_weight * incoming(world_position, exit_direction);
+#endif
+    light += left(path, -n, INTERNAL == 0);
 #ifdef REFRACTOR
     for (int i = 1; i <= INTERNAL; ++i) {
       vec3 outward;
       go_on(path, outward);
-      leave(path, outward, i == INTERNAL, exit_direction, exit_weight);
-      light += exit_weight * incoming(path.position, exit_direction);
+      light += left(path, outward, i == INTERNAL);
     }
 #endif
     return light;
@@ -49,8 +75,7 @@ vec3 dielectric(vec3 V, vec3 n, bool inside) {
   for (int i = 0; i <= INTERNAL; ++i) {
     vec3 outward;
     go_on(path, outward);
-    leave(path, outward, i == INTERNAL, exit_direction, exit_weight);
-    light += exit_weight * incoming(path.position, exit_direction);
+    light += left(path, outward, i == INTERNAL);
   }
 #else
   light += path.throughput * incoming(world_position, path.direction);

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include <tbb/parallel_for.h>
+
 namespace pellucid::geocube {
 namespace {
 
@@ -18,27 +20,38 @@ struct Narrowest {
   explicit Narrowest(double c) : cosine(c), sine(std::sqrt(std::max(0.0, 1 - c * c))) {}
 };
 
-/// What a cell covers, seen from the cone's apex: a ball, by its centre's place along and across the axis.
+/// What a cell covers, seen from the cone's apex: a disc's middle by its place along and across the axis, its normal in
+/// the plane of axis and middle, and how far it reaches within the disc's plane and off it.
 struct Candidate {
-  double along = 0, across = 0, reach = -1;
-  double outside = 0;  // how far it was outside the cone
+  double along = 0, across = 0, radius = -1, thickness = 0;
+  double normal_along = 0, normal_across = 0;
+  double outside = 0;  // how far it was outside the cone, at most
   int level = 0, face = 0, x = 0, y = 0;
 
+  // A lower bound of how far the cell's points are outside the cone. For cones up to 90° that distance is convex, so
+  // that it is at least its linear part about the middle: where the surface touches the cone it lies along it, and
+  // counts by its thickness, which falls with the square of its size.
+  double nearest(const Narrowest& cone) const {
+    const double off = normal_across * cone.cosine - normal_along * cone.sine;
+    return across * cone.cosine - along * cone.sine - std::abs(off) * thickness -
+           std::sqrt(std::max(0.0, 1 - off * off)) * radius;
+  }
   // False when it lies outside the cone and so cannot narrow it.
   bool meets(const Narrowest& cone) const {
-    if (cone.cosine > 0 && along * cone.cosine + across * cone.sine < 0)
-      return along * along + across * across < reach * reach;
-    return across * cone.cosine - along * cone.sine < reach;
+    if (cone.cosine > 0 && along * cone.cosine + across * cone.sine < 0 &&
+        along * along + across * across >= radius * radius)
+      return false;
+    return nearest(cone) < 0;
   }
 };
 
 // Depth first, the most promising cell first. `cover(index, candidate)` tells what a cell covers, false if nothing of
-// interest; `score(texel)` is the cosine of what narrows the cone; `slack` is the share of 1 − cos that may be missed.
+// interest; `score(texel)` is the cosine of what narrows the cone.
 template <class Cover, class Score>
-double search(const SheetTree& tree, double best, std::size_t& found, double slack, Cover cover, Score score) {
+double search(const SheetTree& tree, double best, std::size_t& found, Cover cover, Score score) {
   std::array<Candidate, 96> stack;
   std::size_t depth = 0;
-  Narrowest cone(best + slack * (1 - best));
+  Narrowest cone(best);
   const auto push = [&](int level, int face, int x, int y, std::size_t base) {
     Candidate c{.level = level, .face = face, .x = x, .y = y};
     if (!cover(tree.at(level, face, x, y), c) || !c.meets(cone)) return;
@@ -59,7 +72,7 @@ double search(const SheetTree& tree, double best, std::size_t& found, double sla
       const double value = score(texel);
       if (value > best) {
         best = value;
-        cone = Narrowest(best + slack * (1 - best));
+        cone = Narrowest(best);
         found = texel;
       }
       continue;
@@ -88,93 +101,105 @@ SheetTree::SheetTree(const CubeGrid& grid, Sheet sheet) : grid_(grid), sheet_(st
   cells_.resize(total);
   ranges_.resize(total);
   for (std::size_t i = 0; i < grid.texels(); ++i) {
-    if (sheet_.present[i] != 0) cells_[i] = {sheet_.points[i], 0, false};
+    if (sheet_.present[i] != 0) cells_[i].centre = sheet_.points[i], cells_[i].radius = 0;
     cells_[i].gaps = sheet_.present[i] == 0;
     ranges_[i].axis = grid.direction(i);
   }
   for (int level = 1; level < levels(); ++level) {
-    const int below = width(level - 1);
-    const int texels = 1 << level;  // covered by a cell, fewer at the far border
-    for (int face = 0; face < 6; ++face) {
-      for (int y = 0; y < width(level); ++y) {
-        for (int x = 0; x < width(level); ++x) {
-          Cell& cell = cells_[at(level, face, x, y)];
-          glm::dvec3 low(1e300), high(-1e300);
-          for (int k = 0; k < 4; ++k) {
-            if (2 * x + k % 2 >= below || 2 * y + k / 2 >= below) continue;
-            const Cell& part = cells_[at(level - 1, face, 2 * x + k % 2, 2 * y + k / 2)];
-            cell.gaps = cell.gaps || part.gaps;
-            if (part.radius < 0) continue;
-            low = glm::min(low, part.centre - part.radius);
-            high = glm::max(high, part.centre + part.radius);
-          }
-          if (low.x <= high.x) {
-            cell.centre = 0.5 * (low + high);
-            for (int k = 0; k < 4; ++k) {
-              if (2 * x + k % 2 >= below || 2 * y + k / 2 >= below) continue;
-              const Cell& part = cells_[at(level - 1, face, 2 * x + k % 2, 2 * y + k / 2)];
-              if (part.radius < 0) continue;
-              cell.radius = std::max(cell.radius, glm::distance(cell.centre, part.centre) + part.radius);
-            }
-          }
-          // On a face the farthest direction from a cell's middle is at one of its corners.
-          const int x0 = x * texels, x1 = std::min(x0 + texels, grid.n()) - 1;
-          const int y0 = y * texels, y1 = std::min(y0 + texels, grid.n()) - 1;
-          Range& range = ranges_[at(level, face, x, y)];
-          const glm::dvec3 corners[] = {grid.direction({face, x0, y0}), grid.direction({face, x1, y0}),
-                                        grid.direction({face, x0, y1}), grid.direction({face, x1, y1})};
-          range.axis = glm::normalize(corners[0] + corners[1] + corners[2] + corners[3]);
-          for (const glm::dvec3& corner : corners)
-            range.cosine = std::min(range.cosine, glm::dot(corner, range.axis));
-          range.cosine -= 1e-12;  // rounding
-          range.sine = std::sqrt(std::max(0.0, 1 - range.cosine * range.cosine));
-        }
+    tbb::parallel_for(0, 6 * width(level), [&](int row) {
+      for (int x = 0; x < width(level); ++x)
+        build(level, row / width(level), x, row % width(level));
+    });
+  }
+}
+
+// Looks at every texel of the cell again, so that balls and discs are as small as can be.
+void SheetTree::build(int level, int face, int x, int y) {
+  const int texels = 1 << level;  // covered by a cell, fewer at the far border
+  const int x0 = x * texels, x1 = std::min(x0 + texels, grid_.n()) - 1;
+  const int y0 = y * texels, y1 = std::min(y0 + texels, grid_.n()) - 1;
+  Cell& cell = cells_[at(level, face, x, y)];
+  glm::dvec3 low(1e300), high(-1e300);
+  const auto for_points = [&](auto&& visit) {
+    for (int v = y0; v <= y1; ++v) {
+      for (int u = x0; u <= x1; ++u) {
+        const std::size_t texel = grid_.index({face, u, v});
+        if (sheet_.present[texel] != 0)
+          visit(sheet_.points[texel]);
+        else
+          cell.gaps = true;
       }
     }
+  };
+  for_points([&](const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  });
+  if (low.x <= high.x) {
+    cell.centre = 0.5 * (low + high);
+    const auto corner = [&](int u, int v) {
+      const std::size_t texel = grid_.index({face, u, v});
+      return sheet_.present[texel] != 0 ? sheet_.points[texel] : cell.centre;
+    };
+    const glm::dvec3 across = glm::cross(corner(x1, y1) - corner(x0, y0), corner(x0, y1) - corner(x1, y0));
+    const double length = glm::length(across);
+    if (length > 0) cell.normal = across / length;
+    cell.radius = 0;
+    double least = 1e300, most = -1e300;
+    for_points([&](const glm::dvec3& p) {
+      const double off = glm::dot(p - cell.centre, cell.normal);
+      least = std::min(least, off);
+      most = std::max(most, off);
+    });
+    // The middle moves to the middle of the points' slab.
+    if (length > 0) cell.centre += 0.5 * (least + most) * cell.normal;
+    for_points([&](const glm::dvec3& p) { cell.radius = std::max(cell.radius, glm::distance(p, cell.centre)); });
+    cell.thickness = length > 0 ? 0.5 * (most - least) : cell.radius;
   }
+  // On a face the farthest direction from a cell's middle is at one of its corners.
+  Range& range = ranges_[at(level, face, x, y)];
+  const glm::dvec3 corners[] = {grid_.direction({face, x0, y0}), grid_.direction({face, x1, y0}),
+                                grid_.direction({face, x0, y1}), grid_.direction({face, x1, y1})};
+  range.axis = glm::normalize(corners[0] + corners[1] + corners[2] + corners[3]);
+  for (const glm::dvec3& corner : corners)
+    range.cosine = std::min(range.cosine, glm::dot(corner, range.axis));
+  range.cosine -= 1e-12;  // rounding
+  range.sine = std::sqrt(std::max(0.0, 1 - range.cosine * range.cosine));
 }
 
-void SheetTree::include(const SheetTree& other) {
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    Cell& mine = cells_[i];
-    const Cell& theirs = other.cells_[i];
-    if (theirs.radius < 0) continue;
-    if (mine.radius < 0) {
-      mine.centre = theirs.centre;
-      mine.radius = theirs.radius;
-      continue;
-    }
-    mine.radius = std::max(mine.radius, glm::distance(mine.centre, theirs.centre) + theirs.radius);
-  }
-}
-
-double cone_a_cosine(const ConeA& cone, const SheetTree& tree, const std::vector<const Sheet*>& sheets,
-                     std::size_t& hint) {
+double cone_a_cosine(const ConeA& cone, const std::vector<const SheetTree*>& trees, std::size_t& hint) {
   // The cosine of the angle at the apex between the axis and a point between the apex and the base.
-  const auto score = [&](std::size_t texel) {
-    double best = kNone;
-    for (const Sheet* sheet : sheets) {
-      if (sheet->present[texel] == 0) continue;
-      const glm::dvec3 w = sheet->points[texel] - cone.apex;
-      const double along = glm::dot(w, cone.axis);
-      if (along <= 0 || along > cone.height) continue;
-      best = std::max(best, along / glm::length(w));
-    }
-    return best;
+  const auto score_in = [&](const Sheet& sheet, std::size_t texel) {
+    if (sheet.present[texel] == 0) return kNone;
+    const glm::dvec3 w = sheet.points[texel] - cone.apex;
+    const double along = glm::dot(w, cone.axis);
+    return along <= 0 || along > cone.height ? kNone : along / glm::length(w);
   };
-  const auto cover = [&](std::size_t at, Candidate& c) {
-    const SheetTree::Cell& cell = tree.cell(at);
-    if (cell.radius < 0) return false;
-    const glm::dvec3 w = cell.centre - cone.apex;
-    c.along = glm::dot(w, cone.axis);
-    if (c.along + cell.radius <= 0 || c.along - cell.radius > cone.height) return false;
-    c.across = std::sqrt(std::max(0.0, glm::dot(w, w) - c.along * c.along));
-    c.reach = cell.radius + kRounding * cone.height;
-    return true;
-  };
-  const double first = std::max(0.0, score(hint));
-  const double best = search(tree, first, hint, kSlack, cover, score);
-  return best > 0 ? best + kSlack * (1 - best) : 0;
+  double best = 0;
+  for (const SheetTree* tree : trees)
+    best = std::max(best, score_in(tree->sheet(), hint));
+  const double rounding = kRounding * cone.height;
+  for (const SheetTree* tree : trees) {
+    const auto cover = [&](std::size_t at, Candidate& c) {
+      const SheetTree::Cell& cell = tree->cell(at);
+      if (cell.radius < 0) return false;
+      const glm::dvec3 w = cell.centre - cone.apex;
+      c.along = glm::dot(w, cone.axis);
+      if (c.along + cell.radius <= 0 || c.along - cell.radius > cone.height) return false;
+      c.across = std::sqrt(std::max(0.0, glm::dot(w, w) - c.along * c.along));
+      c.radius = cell.radius + rounding;
+      c.thickness = cell.thickness + rounding;
+      c.normal_along = glm::dot(cell.normal, cone.axis);
+      // On the axis itself the direction across has no value; the cell counts by its radius there.
+      if (c.across > rounding)
+        c.normal_across = (glm::dot(cell.normal, w) - c.normal_along * c.along) / c.across;
+      else
+        c.normal_along = 0;
+      return true;
+    };
+    best = search(*tree, best, hint, cover, [&](std::size_t texel) { return score_in(tree->sheet(), texel); });
+  }
+  return best;
 }
 
 double cone_b_inscribed(const ConeB& cone, const SheetTree& tree, std::size_t& hint) {
@@ -185,15 +210,16 @@ double cone_b_inscribed(const ConeB& cone, const SheetTree& tree, std::size_t& h
   };
   const auto cover = [&](std::size_t at, Candidate& c) {
     const SheetTree::Cell& cell = tree.cell(at);
-    if (!cell.gaps && std::abs(glm::dot(cell.centre, cone.normal) - cone.offset) + cell.radius <= cone.half_width)
+    if (!cell.gaps &&
+        std::abs(glm::dot(cell.centre, cone.normal) - cone.offset) + cell.reach(cone.normal) <= cone.half_width)
       return false;
     const SheetTree::Range& range = tree.range(at);  // a cap of the unit sphere, less than 60° wide
     c.along = glm::dot(range.axis, cone.axis);
     c.across = std::sqrt(std::max(0.0, 1 - c.along * c.along));
-    c.reach = range.sine + kRounding;
+    c.radius = c.thickness = range.sine + kRounding;
     return true;
   };
-  const double best = search(tree, std::max(score(hint), -1.0), hint, 0.0, cover, score);
+  const double best = search(tree, std::max(score(hint), -1.0), hint, cover, score);
   return std::min(best, 1.0);
 }
 

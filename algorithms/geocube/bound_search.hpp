@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,10 +12,8 @@
 
 /// Cones A and B of a geocube by branch and bound over a quadtree on each face of the cube map (the paper compares
 /// every texel with every other). What a tree's cell cannot better is left out unseen; the results are those of the
-/// full comparison but for `kSlack`, which is on the safe side.
+/// full comparison. A search looks at some cells of each level, whatever their number, where the surface is smooth.
 namespace pellucid::geocube {
-
-inline constexpr double kSlack = 1e-3;  ///< share of 1 − cos by which a cone A may be narrower than it could be
 
 /// One surface point for each texel, or none, and for each cell of the quadtrees a ball around its points.
 struct Sheet {
@@ -25,10 +25,16 @@ class SheetTree {
  public:
   SheetTree(const CubeGrid& grid, Sheet sheet);
 
-  struct Cell {
-    glm::dvec3 centre{0.0};
-    double radius = -1;  ///< negative: no points
-    bool gaps = false;   ///< some texel has no point
+  struct Cell {  ///< a disc that holds the cell's points
+    glm::dvec3 centre{0.0}, normal{0.0};
+    double radius = -1;    ///< negative: no points
+    double thickness = 0;  ///< how far the points are off the disc's plane, at most
+    bool gaps = false;     ///< some texel has no point
+    /// How far the points reach from the centre along a unit direction, at most.
+    double reach(const glm::dvec3& direction) const {
+      const double off = glm::dot(normal, direction);
+      return std::abs(off) * thickness + std::sqrt(std::max(0.0, 1 - off * off)) * radius;
+    }
   };
   struct Range {  ///< of the directions through a cell's texel centres
     glm::dvec3 axis{0.0};
@@ -46,10 +52,9 @@ class SheetTree {
   const Cell& cell(std::size_t at) const { return cells_[at]; }
   const Range& range(std::size_t at) const { return ranges_[at]; }
   const Sheet& sheet() const { return sheet_; }
-  /// The same boxes, widened to hold another sheet's points too.
-  void include(const SheetTree& other);
 
  private:
+  void build(int level, int face, int x, int y);
   CubeGrid grid_;
   Sheet sheet_;
   std::vector<int> widths_;
@@ -65,9 +70,9 @@ struct ConeA {
   double height = 0;
 };
 /// The largest cosine of the angle between the cone's axis and a surface point between apex and base: cos θ_A of the
-/// widest cone that holds none (0 when there is no such point). `sheets` are all that may stand in the way, `tree` is a
-/// tree that holds the points of all of them; `hint` is a texel likely to be the one, and becomes it.
-double cone_a_cosine(const ConeA&, const SheetTree& tree, const std::vector<const Sheet*>& sheets, std::size_t& hint);
+/// widest cone that holds none (0 when there is no such point). `trees` are of all sheets that may stand in the way;
+/// `hint` is a texel likely to be the one, and becomes it.
+double cone_a_cosine(const ConeA&, const std::vector<const SheetTree*>& trees, std::size_t& hint);
 
 /// The base of a cone B: the surface must stay within ±half_width of the tangent plane at S.
 struct ConeB {

@@ -1,15 +1,11 @@
 #include "algorithms/geocube/cache.hpp"
 
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "algorithms/scene/files/atomic_file.hpp"
+#include "algorithms/scene/files/cache_file.hpp"
 #include "algorithms/scene/files/hash.hpp"
 #include "gl/error.hpp"
 
@@ -20,63 +16,17 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raise it when what is computed or how it is written changes.
-constexpr int kVersion = 4;
-constexpr std::string_view kMagic = "pellucid geocube\n";
+constexpr int kVersion = 5;
+constexpr const char* kWhat = "geocube";
 
 template <class T>
 std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-/// Values one after the other, as they lie in memory.
-class Writer {
- public:
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void add(const T& value) {
-    const auto bytes = std::as_bytes(std::span(&value, 1));
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-  }
-  template <class T>
-  void add(const std::vector<T>& values) {
-    add(static_cast<std::uint64_t>(values.size()));
-    const auto bytes = std::as_bytes(std::span(values));
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-  }
-  const std::vector<std::byte>& bytes() const { return bytes_; }
-
- private:
-  std::vector<std::byte> bytes_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void take(T& value) { copy(&value, sizeof(T)); }
-  template <class T>
-  void take(std::vector<T>& values) {
-    std::uint64_t count = 0;
-    take(count);
-    if (count > rest_.size() / sizeof(T)) throw InputError("a list is longer than the file");
-    values.resize(count);
-    copy(values.data(), count * sizeof(T));
-  }
-  bool done() const { return rest_.empty(); }
-
- private:
-  void copy(void* to, std::size_t count) {
-    if (count > rest_.size()) throw InputError("it ends early");
-    if (count > 0) std::memcpy(to, rest_.data(), count);
-    rest_ = rest_.subspan(count);
-  }
-  std::span<const std::byte> rest_;
-};
-
 // What follows the key and the checksum: everything but the options, which the key stands for.
 std::vector<std::byte> packed(const CubeSet& set) {
-  Writer out;
+  ByteWriter out;
   out.add(set.diagonal);
   out.add(set.unseen_share);
   out.add(set.build_s);
@@ -97,7 +47,7 @@ std::vector<std::byte> packed(const CubeSet& set) {
 }
 
 CubeSet unpacked(std::span<const std::byte> bytes) {
-  Reader in(bytes);
+  ByteReader in(bytes);
   CubeSet set;
   in.take(set.diagonal);
   in.take(set.unseen_share);
@@ -124,49 +74,6 @@ CubeSet unpacked(std::span<const std::byte> bytes) {
   return set;
 }
 
-// A file is the magic, the key and the body's checksum, then the body.
-template <class T, class Unpack>
-std::optional<T> read_file(const fs::path& file, const std::string& key, Unpack unpack) {
-  std::error_code error;
-  if (!fs::exists(file, error)) return std::nullopt;
-  try {
-    std::ifstream in(file, std::ios::binary);
-    const std::vector<char> text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const std::string head = std::string(kMagic) + key;
-    constexpr std::size_t kDigits = 64;
-    if (text.size() < head.size() + kDigits || std::string_view(text.data(), head.size()) != head)
-      throw InputError("it holds something else");
-    const auto body = std::as_bytes(std::span(text)).subspan(head.size() + kDigits);
-    if (std::string_view(text.data() + head.size(), kDigits) != sha256_hex(body))
-      throw InputError("its checksum is wrong");
-    return unpack(body);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "warning: cached geocube '{}' cannot be used ({}); making it again\n", file.string(), e.what());
-  }
-  return std::nullopt;
-}
-
-void write_file(const fs::path& file, const std::string& key, std::span<const std::byte> body) {
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
-  if (error)
-    throw RuntimeError(fmt::format("folder '{}' cannot be made: {}", file.parent_path().string(), error.message()));
-  AtomicFile out(file);
-  out.write(kMagic);
-  out.write(key);
-  out.write(sha256_hex(body));
-  out.write(body);
-  out.commit();
-}
-
-void keep(const fs::path& file, const std::string& key, std::span<const std::byte> body) {
-  try {
-    write_file(file, key, body);
-  } catch (const RuntimeError& e) {
-    fmt::print(stderr, "warning: the geocube is not cached: {}\n", e.what());
-  }
-}
-
 void add_mesh(Sha256& hash, const Mesh& mesh) {
   hash.add(bytes_of(mesh.positions));
   hash.add(bytes_of(mesh.normals));
@@ -174,18 +81,6 @@ void add_mesh(Sha256& hash, const Mesh& mesh) {
 }
 
 }  // namespace
-
-fs::path cache_folder() {
-  const auto set = [](const char* name) -> std::string {
-    const char* value = std::getenv(name);
-    return value != nullptr ? value : "";
-  };
-  if (const std::string own = set("PELLUCID_CACHE"); !own.empty())
-    return own == "off" ? fs::path() : fs::path(own) / "geocube";
-  if (const std::string xdg = set("XDG_CACHE_HOME"); !xdg.empty()) return fs::path(xdg) / "pellucid" / "geocube";
-  if (const std::string home = set("HOME"); !home.empty()) return fs::path(home) / ".cache" / "pellucid" / "geocube";
-  return {};
-}
 
 std::string cache_key(const Mesh& mesh, std::span<const glm::dvec3> centers, const CubeOptions& o) {
   Sha256 hash;
@@ -197,11 +92,13 @@ std::string cache_key(const Mesh& mesh, std::span<const glm::dvec3> centers, con
 }
 
 std::optional<CubeSet> read_cubes(const fs::path& file, const std::string& key) {
-  return read_file<CubeSet>(file, key, unpacked);
+  std::optional<CubeSet> set;
+  CacheFile{file, kWhat, key}.read([&](std::span<const std::byte> body) { set = unpacked(body); });
+  return set;
 }
 
 void write_cubes(const fs::path& file, const std::string& key, const CubeSet& set) {
-  write_file(file, key, packed(set));
+  CacheFile{file, kWhat, key}.write(packed(set));
 }
 
 CubeSet cached_cubes(const Solid& solid, const Mesh& mesh, std::span<const glm::dvec3> centers,
@@ -214,7 +111,7 @@ CubeSet cached_cubes(const Solid& solid, const Mesh& mesh, std::span<const glm::
     return std::move(*set);
   }
   CubeSet set = build_cubes(solid, centers, options);
-  keep(file, key, packed(set));
+  CacheFile{file, kWhat, key}.keep(packed(set));
   return set;
 }
 
@@ -226,7 +123,7 @@ Placement cached_placement(const Solid& solid, const Mesh& mesh, const Placement
   const std::string key = hash.hex();
   const fs::path file = folder / (key + ".places");
   const auto unpack = [](std::span<const std::byte> bytes) {
-    Reader in(bytes);
+    ByteReader in(bytes);
     Placement placement;
     in.take(placement.centers);
     in.take(placement.unseen);
@@ -234,12 +131,14 @@ Placement cached_placement(const Solid& solid, const Mesh& mesh, const Placement
       throw InputError("it holds no places");
     return placement;
   };
-  if (auto known = read_file<Placement>(file, key, unpack)) return std::move(*known);
-  Placement placement = place_cubes(solid, o);
-  Writer out;
+  Placement placement;
+  const CacheFile cached{file, kWhat, key};
+  if (cached.read([&](std::span<const std::byte> body) { placement = unpack(body); })) return placement;
+  placement = place_cubes(solid, o);
+  ByteWriter out;
   out.add(placement.centers);
   out.add(placement.unseen);
-  keep(file, key, out.bytes());
+  cached.keep(out.bytes());
   return placement;
 }
 

@@ -9,14 +9,8 @@
 #include "algorithms/geocube/placement.hpp"
 #include "algorithms/scene/scene.hpp"
 
-/// Cubes are kept in files by the content they were made from. As with cached references, a file that is truncated,
-/// altered or of something else costs a warning and is made again, and a folder that cannot be written costs a warning
-/// and nothing else.
+/// Cubes are kept in files by the content they were made from (cache_file.hpp).
 namespace pellucid::geocube {
-
-/// $PELLUCID_CACHE/geocube, or $XDG_CACHE_HOME/pellucid/geocube, or ~/.cache/pellucid/geocube; empty, which means no
-/// files, where none of them is set or PELLUCID_CACHE is "off".
-std::filesystem::path cache_folder();
 
 /// SHA-256 (hex) of the mesh, the centres and the options.
 std::string cache_key(const Mesh&, std::span<const glm::dvec3> centers, const CubeOptions&);

@@ -137,15 +137,11 @@ class Cones {
       outer_.emplace_back(grid_, sheet_of(layer.outer, grid_));
     for (std::size_t k = 1; k < radial.layers.size(); ++k)
       inner_.emplace_back(grid_, sheet_of(radial.layers[k].inner, grid_));
-    if (!inner_.empty()) all_.push_back(outer_[0]);
-    for (std::size_t k = 1; k < outer_.size(); ++k) {
-      all_[0].include(outer_[k]);
-      all_[0].include(inner_[k - 1]);
-      sheets_.push_back(&outer_[k].sheet());
-      sheets_.push_back(&inner_[k - 1].sheet());
-    }
-    sheets_.push_back(&outer_[0].sheet());
-    nearest_only_ = {&outer_[0].sheet()};
+    nearest_only_ = {&outer_[0]};
+    for (const SheetTree& tree : outer_)
+      all_.push_back(&tree);
+    for (const SheetTree& tree : inner_)
+      all_.push_back(&tree);
     sine_c_ = std::min(1.0, 1 / options.ior);
     cosine_c_ = std::sqrt(std::max(0.0, 1 - sine_c_ * sine_c_));
   }
@@ -158,14 +154,19 @@ class Cones {
       layer.bounds.assign(grid_.texels(), {0, 1, 1, 0});
       layer.planes.assign(grid_.texels(), glm::vec4(0.0F));
       if (k > 0) layer.inners.assign(grid_.texels(), glm::vec4(0.0F));
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, 2), [&](const auto& range) {
-        for (std::size_t row = range.begin(); row != range.end(); ++row) {
-          Hints hints;
-          hints.a = hints.b = row * n;
-          for (std::size_t x = 0; x < n; ++x)
-            fill(layer, k, row * n + x, hints);
-        }
-      });
+      // By single rows, so that no core is left with the dear ones at the end.
+      const tbb::blocked_range<std::size_t> all_rows(0, rows, 1);
+      tbb::parallel_for(
+          all_rows,
+          [&](const auto& range) {
+            for (std::size_t row = range.begin(); row != range.end(); ++row) {
+              Hints hints;
+              hints.a = hints.b = row * n;
+              for (std::size_t x = 0; x < n; ++x)
+                fill(layer, k, row * n + x, hints);
+            }
+          },
+          tbb::simple_partitioner());
     }
   }
 
@@ -181,7 +182,7 @@ class Cones {
     const glm::dvec3 v = grid_.direction(texel), s = outer.distance * v;
     double a = 1, b = 1, c = 0;
     if (options_.use_a) {
-      a = k == 0 ? cone_a_cosine({s, -v, outer.distance}, outer_[0], nearest_only_, hints.a)
+      a = k == 0 ? cone_a_cosine({s, -v, outer.distance}, nearest_only_, hints.a)
                  : cones_between(inner.distance, outer.distance, v, hints.a);
     }
     if (options_.use_b) {
@@ -215,8 +216,8 @@ class Cones {
   // The narrower of the two cones from the ends of the interval to its middle.
   double cones_between(double from, double to, const glm::dvec3& v, std::size_t& hint) const {
     const double half = 0.5 * (to - from);
-    const double outwards = cone_a_cosine({from * v, v, half}, all_[0], sheets_, hint);
-    return std::max(outwards, cone_a_cosine({to * v, -v, half}, all_[0], sheets_, hint));
+    const double outwards = cone_a_cosine({from * v, v, half}, all_, hint);
+    return std::max(outwards, cone_a_cosine({to * v, -v, half}, all_, hint));
   }
 
   double cone_b(const Crossing& crossing, const glm::dvec3& v, const SheetTree& tree, std::size_t& hint) const {
@@ -238,8 +239,8 @@ class Cones {
   const CubeOptions& options_;
   const Radial& radial_;
   CubeGrid grid_;
-  std::vector<SheetTree> outer_, inner_, all_;  // by layer; by layer but the first; none or one of all
-  std::vector<const Sheet*> sheets_, nearest_only_;
+  std::vector<SheetTree> outer_, inner_;  // by layer; by layer but the first
+  std::vector<const SheetTree*> all_, nearest_only_;
   double cosine_c_ = 1, sine_c_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/geocube/glass_pass.hpp"
@@ -48,6 +49,14 @@ class Geocube final : public Technique {
     out["cubes_placed"] = cubes;
     out["object_triangles"] = triangles;
     out["cube_bytes"] = bytes;
+    if (pass_.translucency().bytes() > 0) {
+      out["key_map_bytes"] = pass_.translucency().bytes();
+      out["key_map_full_bytes"] = pass_.translucency().full_resolution_bytes();
+      out["key_map_filter_s"] = pass_.translucency().filter_s();
+      for (const int factor : {2, 4, 8, 16, 32, 64})
+        out[fmt::format("key_width_{}_texels", factor)] =
+            scattering::least_width(factor, static_cast<double>(parameters_.omega));
+    }
     out["unseen_share"] = unseen;
     out["dropped_share"] = dropped;
     if (frame_) pass_.compare_searches(*frame_->scene, frame_->camera).write(out);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "algorithms/geocube/cubes.hpp"
+#include "algorithms/raster/translucency.hpp"
 #include "algorithms/technique.hpp"
 
 /// Refraction at both sides of a closed object and internal reflection: Chan and Wang 2005 (references.bib: chan2005).
@@ -36,6 +37,11 @@ struct Parameters {
   int table_size = 256;
   SearchStage stage = SearchStage::fragment;
   int vertex_iterations = 6;
+  Transfer transfer = Transfer::gaussian;
+  int face_size = 512;
+  float omega = 0.02F;
+  scattering::SphereFilter key_filter = scattering::SphereFilter::direct;
+  float widening = 1;
   Show show = Show::radiance;
 
   static constexpr void parameters(auto& self, auto&& visit) {
@@ -122,6 +128,38 @@ struct Parameters {
                          .choices = "fragment|split"});
     visit(PARAM(vertex_iterations),
           {.range = {1, 4096}, .cite = "Sec. 4", .doc = "bound on the steps of the vertex stage, if split"});
+    visit(PARAM(transfer),
+          {.symbol = "T_τ",
+           .cite = "Sec. 3.3",
+           .doc = "what stands for the transmission of a scattering medium: nothing (only absorption acts), "
+                  "the paper's Gaussian and constant, these with the unscattered part apart, or two "
+                  "Gaussians",
+           .when = Change::precompute,
+           .choices = kTransfers});
+    visit(PARAM(face_size),
+          {.symbol = "n",
+           .range = {64, 1024},
+           .cite = "Sec. 3.2",
+           .doc = "width and height of a face that the blurred environments start from, a power of two",
+           .when = Change::precompute,
+           .unit = "texels"});
+    visit(PARAM(omega),
+          {.symbol = "ω",
+           .range = {0.001, 0.5},
+           .cite = "Sec. 3.2",
+           .doc = "error that a blurred environment's texels may make, of a Gaussian's height: less means "
+                  "wider key maps",
+           .when = Change::precompute});
+    visit(PARAM(key_filter), {.cite = "Sec. 3.1",
+                              .doc = "filter environments on the sphere, or as the paper does by three flat maps",
+                              .when = Change::precompute,
+                              .choices = scattering::kSphereFilters});
+    visit(PARAM(widening),
+          {.range = {0.25, 4},
+           .cite = "beyond the paper",
+           .doc = "factor of the blur's width: the slab has no interface, at which a flat body of index "
+                  "η spreads angles by η",
+           .when = Change::precompute});
     visit(PARAM(show), {.cite = "Fig. 1c; beyond the paper",
                         .doc = "the picture, or of the first search: its steps over their bound, the way's length over "
                                "the diagonal, where the bound stopped it, the last cube, and where light is totally "

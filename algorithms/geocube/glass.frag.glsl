@@ -4,6 +4,10 @@
 #include "algorithms/shaders/environment.glsl"
 #include "algorithms/shaders/octahedron.glsl"
 #include "algorithms/shaders/optics.glsl"
+#ifdef SCATTERING
+vec3 sharp_radiance(vec3 direction) { return environment_radiance(direction); }
+#include "algorithms/shaders/translucency.glsl"
+#endif
 
 layout(binding = 5) uniform sampler2D entries;
 #ifdef SPLIT
@@ -74,9 +78,16 @@ void main() {
   exit_normal = vec4(first.normal, float(first.cube));
 #else
   vec3 shown = vec3(0.0);
+#ifdef SCATTERING
+  vec3 depth = vec3(0.0), returned = vec3(0.0);  // optical thickness so far, and what of the light it has sent back
+#endif
   for (int k = 0; here && k <= reflections && h != vec3(0.0) && (k == 0 || max(weight.x, max(weight.y, weight.z)) > cut); ++k) {
     Exit found = trace_inside(p, n, h, cube, start);
+#ifdef SCATTERING
+    depth += extinction * (found.path * object_scale);
+#else
     weight *= transmitted(absorption, found.path * object_scale);
+#endif
     n = found.normal;
     // A normal that looks against the ray belongs to another part of the surface: the ray grazes it.
     if (dot(h, n) <= 0.0) n = normalize(n - 1.0001 * dot(h, n) * h);
@@ -89,7 +100,12 @@ void main() {
       if (show == 4) shown = vec3(found.cube & 1, found.cube >> 1 & 1, found.cube >> 2 & 1) * 0.75 + 0.25;
       if (show == 5) shown = kept >= 1.0 ? vec3(1.0, 0.5, 0.0) : vec3(0.2);
     }
+#ifdef SCATTERING
+    vec3 outwards = normalize(object_to_world * (kept < 1.0 ? refract(h, -n, ior) : n));
+    color += weight.x * translucent(depth, outwards, 1.0 - kept, returned);
+#else
     if (kept < 1.0) color += (1.0 - kept) * weight * light(refract(h, -n, ior));
+#endif
     weight *= kept;
     h = reflect(h, n);
     p = found.point;

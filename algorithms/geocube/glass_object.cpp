@@ -14,6 +14,7 @@
 
 #include "algorithms/geocube/cache.hpp"
 #include "algorithms/geocube/placement.hpp"
+#include "algorithms/scene/files/cache_file.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {
@@ -118,7 +119,7 @@ GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& par
     solid_ = std::make_unique<Solid>(*mesh, parameters.holes);
     std::vector<glm::dvec3> centers;
     place(scene, parameters, *mesh, centers);
-    const CubeSet set = cached_cubes(*solid_, *mesh, centers, options_of(parameters, ior_), cache_folder());
+    const CubeSet set = cached_cubes(*solid_, *mesh, centers, options_of(parameters, ior_), cache_folder("geocube"));
     cubes_ = std::make_unique<CubeTextures>(mesh->name, set);
     drawn = with_first_cubes(*mesh, set.first_cube);
   } else {
@@ -137,7 +138,7 @@ GlassObject::GlassObject(const Scene& scene, int instance, const Parameters& par
 void GlassObject::place(const Scene& scene, const Parameters& p, const Mesh& mesh, std::vector<glm::dvec3>& centers) {
   switch (p.placement) {
     case Placing::automatic: {
-      Placement placement = cached_placement(*solid_, mesh, {.cubes = p.cubes}, cache_folder());
+      Placement placement = cached_placement(*solid_, mesh, {.cubes = p.cubes}, cache_folder("geocube"));
       centers = std::move(placement.centers);
       unseen_ = std::move(placement.unseen);
       break;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include "algorithms/raster/mirror.hpp"
 #include "algorithms/raster/pixel_area.hpp"
@@ -21,6 +23,11 @@ void GlassPass::prepare(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (optical(scene, scene.instances[i])) objects_.emplace_back(scene, static_cast<int>(i), parameters_);
   }
+  const scattering::KeyChainOptions chain{.face_size = parameters_.face_size,
+                                          .omega = static_cast<double>(parameters_.omega),
+                                          .filter = parameters_.key_filter};
+  if (const auto settings = translucency_settings(parameters_.transfer, chain, parameters_.widening))
+    translucency_.prepare(scene, *settings);
   function_table_ = make_function_table(parameters_.table_size);
   fullscreen_ = gl::VertexArray("geocube fullscreen");
 }
@@ -28,7 +35,8 @@ void GlassPass::prepare(const Scene& scene) {
 void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
                              gl::PassTimer& timer) {
   refresh(scene);
-  compile(forward.environment_defines());
+  compile(forward.environment_defines(),
+          parameters_.transfer != Transfer::none ? Translucency::defines(scene) : gl::Defines{});
   {
     auto pass = timer.pass("opaque");
     target.framebuffer.bind();
@@ -74,8 +82,11 @@ FetchCounts GlassPass::count_fetches(const Scene& scene, const Camera& camera, c
   if (parameters_.functions != Functions::evaluated || parameters_.stage != SearchStage::fragment ||
       parameters_.layers > 1)
     throw InputError("bench: the bare shader of geocube is of functions = evaluated, stage = fragment and layers = 1");
+  if (parameters_.transfer != Transfer::none && !Translucency::defines(scene).empty())
+    throw InputError(
+        "bench: the bare shader of geocube does not count what a scattering medium fetches: transfer = none");
   gl::Defines defines = defines_;
-  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/shaders/bench/bare_glass.frag.glsl"}, defines);
+  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/geocube/bench/bare_glass.frag.glsl"}, defines);
   defines.emplace_back("COUNT", "1");
   const gl::Program count("geocube counts", {kFullscreen, kGlass}, defines);
   forward.bind_environment(count);
@@ -119,11 +130,12 @@ gl::Defines GlassPass::own_defines() const {
   return defines;
 }
 
-void GlassPass::compile(const gl::Defines& environment) {
+void GlassPass::compile(const gl::Defines& environment, const gl::Defines& medium) {
   if (parameters_.stage == SearchStage::split && parameters_.layers > 1)
     throw InputError("geocube: stage = split takes layers = 1");
   gl::Defines defines = own_defines();
   defines.insert(defines.end(), environment.begin(), environment.end());
+  defines.insert(defines.end(), medium.begin(), medium.end());
   if (glass_ && defines == defines_) return;
   const std::string folder = "algorithms/geocube/";
   entry_ = gl::Program("geocube entries", {folder + "object.vert.glsl", folder + "entry.frag.glsl"}, defines);
@@ -207,6 +219,7 @@ void GlassPass::draw_pixels(const Scene& scene, const Camera& camera, const gl::
     program.set("object_scale", std::cbrt(std::abs(glm::determinant(glm::mat3(to_world)))));
     program.set("ior", material.ior);
     program.set("absorption", material.absorption);
+    if (parameters_.transfer != Transfer::none) translucency_.bind(program, scene, material);
     program.set("diagonal", static_cast<float>(object.cubes()->set().diagonal));
     program.set("reflections", parameters_.reflections);
     program.set("cut", parameters_.cut);

@@ -6,6 +6,7 @@
 #include "algorithms/geocube/glass_object.hpp"
 #include "algorithms/geocube/native_errors.hpp"
 #include "algorithms/raster/forward_pass.hpp"
+#include "algorithms/raster/translucency.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
@@ -34,6 +35,7 @@ class GlassPass {
   std::string reload_shaders();
 
   const std::vector<GlassObject>& objects() const { return objects_; }
+  const Translucency& translucency() const { return translucency_; }
   /// The first searches of the pixels of draw_entries(), drawn again into textures, beside the true surfaces.
   SearchErrors compare_searches(const Scene&, const Camera&) const;
 
@@ -45,7 +47,7 @@ class GlassPass {
 
  private:
   void refresh(const Scene&);
-  void compile(const gl::Defines& environment);
+  void compile(const gl::Defines& environment, const gl::Defines& medium);
   gl::Defines own_defines() const;
   void fit(int width, int height);
   gl::Framebuffer entry_framebuffer(const gl::Texture& depth) const;
@@ -56,6 +58,7 @@ class GlassPass {
   glm::mat3 pixel_to_ray(const Camera&, const glm::mat4& to_world) const;
 
   const Parameters& parameters_;
+  mutable Translucency translucency_;  // keeps the media that it has met
   std::vector<GlassObject> objects_;
   gl::Texture function_table_;
   gl::Program entry_, glass_, reflect_, bare_;

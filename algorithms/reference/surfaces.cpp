@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
@@ -15,14 +16,17 @@
 #include <tbb/parallel_for.h>
 
 #include "algorithms/reference/geometry.hpp"
-#include "algorithms/reference/photon_map.hpp"
-#include "algorithms/reference/photon_source.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/partial_picture.hpp"
+#include "algorithms/reference/photons/photon_map.hpp"
+#include "algorithms/reference/photons/photon_source.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "algorithms/reference/pixel_samples.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"
+#include "algorithms/reference/relief_surfaces.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/reference/surface_point.hpp"
+#include "algorithms/reference/translucent_path.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {
@@ -75,35 +79,17 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Mean and spread of a pixel's samples (Welford).
-class Mean {
- public:
-  void add(const glm::dvec3& value) {
-    ++count_;
-    const glm::dvec3 off = value - mean_;
-    mean_ += off / static_cast<double>(count_);
-    squares_ += off * (value - mean_);
-  }
-  const glm::dvec3& value() const { return mean_; }
-  /// In the worst channel.
-  double standard_error() const {
-    if (count_ < 2) return 0.0;
-    return std::sqrt(worst(squares_) / (static_cast<double>(count_ - 1) * static_cast<double>(count_)));
-  }
-
- private:
-  int count_ = 0;
-  glm::dvec3 mean_{0.0}, squares_{0.0};
-};
-
 // What each thread adds up.
 struct Sums {
   TreeTally tally;
-  double cut_max = 0.0;
-  double error_max = 0.0, error_sum = 0.0;
-  double caustic_max = 0.0, caustic_sum = 0.0;
   RayTree::Scratch scratch;
 };
+
+// Sets the walks' chance apart from the places in the pixels.
+constexpr std::uint32_t kPathSeed = 0x5bd1e995U;
+
+// Samples a pixel between two looks at the clock, of pictures that are kept while they grow.
+constexpr std::int64_t kSamplesAtOnce = 16;
 
 // The share of the largest optical object's radius over which photons are spread without another radius given.
 constexpr double kCausticRadius = 0.01;
@@ -128,6 +114,10 @@ std::optional<PhotonMap> trace_caustics(const Scene& scene, const SurfaceOptions
 }
 
 void check_traceable(const Scene& scene, const SurfaceOptions& options) {
+  if (!scene.reliefs.empty() && has_scattering(scene)) {
+    throw InputError(fmt::format(
+        "scene '{}' has reliefs and a solid that scatters: the reference does not trace them together", scene.name));
+  }
   if (!scene.volume) return;
   if (has_interfaces(scene)) {
     throw InputError(
@@ -156,6 +146,9 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   const Geometry geometry(scene);
   const Illumination light(scene);
   const RayTree tree(scene, geometry);
+  const TranslucentPath walks(scene, geometry);
+  const bool translucent = has_scattering(scene);
+  const ReliefSurfaces reliefs(scene, geometry, light, {options.refract_light});
   SurfaceLayer layer;
   SurfaceStatistics& statistics = layer.statistics;
   statistics.samples = options.samples;
@@ -198,69 +191,90 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     return ray;
   };
 
-  const auto trace_start = std::chrono::steady_clock::now();
-  tbb::combinable<Sums> sums;
-  for_pixels(camera, options.progress, [&](int x, int y) {
-    Sums& sum = sums.local();
-    Mean radiance;
+  PartialPicture picture(scene, camera, options, translucent);
+  const auto sample_pixel = [&](int x, int y, std::int64_t begin, std::int64_t end, Sums& sum) {
+    PixelSum& pixel = picture.pixels[pixel_index(camera, x, y)];
     TreeTally tally;
-    int met_optical = 0;
-    double distance_m = 0.0;
-    glm::dvec3 caustic_error(0.0);
-    for (int s = 0; s < options.samples; ++s) {
+    for (auto s = static_cast<int>(begin); s < static_cast<int>(end); ++s) {
       const glm::dvec2 place = places.at(x, y, s);
       glm::dvec3 sample(0.0);
-      const Hit first = tree.trace(
-          through(x + place.x, y + place.y), limits, sum.scratch, tally,
-          [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
-            sample += weight * shade(light, &geometry, point, tally.rays);
-            if (!caustics) return;
-            const PhotonMap::Irradiance irradiance = caustics->at(point.position, point.face);
-            const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
-            sample += radiance_per_irradiance * irradiance.mean;
-            // Samples of a pixel share the photons, so their errors add up as they are.
-            const double share = 1.0 / options.samples;
-            caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
-          },
-          [&](const glm::dvec3& direction, const glm::dvec3& weight) {
-            sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
-          });
-      radiance.add(sample);
-      distance_m = first.distance;
-      if (first.instance != nullptr && optical(scene, *first.instance)) ++met_optical;
+      const auto lit = [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
+        sample += weight * shade(light, &geometry, point, tally.rays);
+        if (!caustics) return;
+        const PhotonMap::Irradiance irradiance = caustics->at(point.position, point.face);
+        const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
+        sample += radiance_per_irradiance * irradiance.mean;
+        // Samples of a pixel share the photons, so their errors add up as they are.
+        const double share = 1.0 / options.samples;
+        pixel.caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
+      };
+      const auto unlit = [&](const glm::dvec3& direction, const glm::dvec3& weight) {
+        sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
+      };
+      const auto seen_relief = [&](const Hit& hit, const SurfacePoint& point, const glm::dvec3& direction,
+                                   const glm::dvec3& weight) {
+        const auto seen = reliefs.seen(hit, point, direction, tally.rays);
+        if (seen) sample += weight * seen->radiance;
+        return seen.has_value();
+      };
+      const TreeRay ray = through(x + place.x, y + place.y);
+      Hit first;
+      if (translucent) {
+        Random random(hash_bits(x, y, s, options.seed ^ kPathSeed));
+        first = walks.trace(ray, limits, random, tally, lit, unlit);
+      } else {
+        first = tree.trace(ray, limits, sum.scratch, tally, lit, unlit, seen_relief);
+      }
+      pixel.radiance.add(sample);
+      layer.distance_m[pixel_index(camera, x, y)] = first.distance;
+      if (first.instance != nullptr && optical(scene, *first.instance)) ++pixel.met_optical;
     }
-    if (options.samples > 1) {
-      const TreeRay centre = through(x + 0.5, y + 0.5);
-      ++tally.rays;
-      distance_m = geometry.intersect(centre.origin, centre.direction, centre.begin, centre.end).distance;
-    }
-    write(layer.radiance.at(x, y), radiance.value());
-    *layer.optical.at(x, y) = static_cast<float>(met_optical) / static_cast<float>(options.samples);
-    layer.distance_m[pixel_index(camera, x, y)] = distance_m;
+    pixel.cut_weight += tally.cut_weight;
     sum.tally.add(tally);
-    sum.cut_max = std::max(sum.cut_max, tally.cut_weight / options.samples);
-    sum.error_max = std::max(sum.error_max, radiance.standard_error());
-    sum.error_sum += radiance.standard_error();
-    sum.caustic_max = std::max(sum.caustic_max, worst(caustic_error));
-    sum.caustic_sum += worst(caustic_error);
-  });
-  statistics.trace_s = seconds_since(trace_start);
+  };
+  while (picture.samples < options.samples) {
+    const std::int64_t begin = picture.samples;
+    const std::int64_t end =
+        translucent ? std::min<std::int64_t>(options.samples, begin + kSamplesAtOnce) : std::int64_t{options.samples};
+    const auto progress = [&](double share) {
+      options.progress((static_cast<double>(begin) + share * static_cast<double>(end - begin)) / options.samples);
+    };
+    tbb::combinable<Sums> sums;
+    for_pixels(camera, options.progress ? std::function<void(double)>(progress) : std::function<void(double)>(),
+               [&](int x, int y) { sample_pixel(x, y, begin, end, sums.local()); });
+    sums.combine_each([&](const Sums& sum) { picture.tally.add(sum.tally); });
+    picture.samples = end;
+    picture.advance(end == options.samples);
+  }
+  if (options.samples > 1) {
+    for_pixels(camera, {}, [&](int x, int y) {
+      const TreeRay centre = through(x + 0.5, y + 0.5);
+      layer.distance_m[pixel_index(camera, x, y)] =
+          geometry.intersect(centre.origin, centre.direction, centre.begin, centre.end).distance;
+    });
+  }
+  statistics.trace_s = picture.trace_s;
 
   const double pixels = static_cast<double>(layer.distance_m.size());
-  TreeTally all;
-  sums.combine_each([&](const Sums& sum) {
-    all.add(sum.tally);
-    statistics.cut_weight_max = std::max(statistics.cut_weight_max, sum.cut_max);
-    statistics.standard_error_max = std::max(statistics.standard_error_max, sum.error_max);
-    statistics.standard_error_mean += sum.error_sum / pixels;
-    statistics.caustic_standard_error_max = std::max(statistics.caustic_standard_error_max, sum.caustic_max);
-    statistics.caustic_standard_error_mean += sum.caustic_sum / pixels;
-  });
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const PixelSum& pixel = picture.pixels[pixel_index(camera, x, y)];
+      write(layer.radiance.at(x, y), pixel.radiance.value());
+      *layer.optical.at(x, y) = static_cast<float>(pixel.met_optical) / static_cast<float>(options.samples);
+      const double error = pixel.radiance.standard_error(), caustic = worst(pixel.caustic_error);
+      statistics.cut_weight_max = std::max(statistics.cut_weight_max, pixel.cut_weight / options.samples);
+      statistics.standard_error_max = std::max(statistics.standard_error_max, error);
+      statistics.standard_error_mean += error / pixels;
+      statistics.caustic_standard_error_max = std::max(statistics.caustic_standard_error_max, caustic);
+      statistics.caustic_standard_error_mean += caustic / pixels;
+    }
+  }
+  const TreeTally& all = picture.tally;
   const double rays_from_eye = pixels * options.samples;
   statistics.cut_weight_mean = all.cut_weight / rays_from_eye;
   statistics.limited_weight_mean = all.limited_weight / rays_from_eye;
   statistics.lost_weight_mean = all.lost_weight / rays_from_eye;
-  statistics.rays = all.rays;
+  statistics.rays = all.rays + (options.samples > 1 ? layer.distance_m.size() : 0);
   return layer;
 }
 

@@ -109,7 +109,8 @@ void evaluate_instance(const SceneDescription& description, std::size_t i, doubl
                         from.material,
                         glm::mat4(to_world),
                         glm::vec3(from.tint),
-                        {from.cubes.begin(), from.cubes.end()}};
+                        {from.cubes.begin(), from.cubes.end()},
+                        from.relief};
 }
 
 // ---- lights and views ----
@@ -201,6 +202,8 @@ std::vector<Affected> all_parts(const SceneDescription& description) {
   add(Part::mesh, description.meshes.size());
   add(Part::forest, description.forest ? 1 : 0);
   add(Part::material, description.materials.size());
+  add(Part::relief_maps, description.reliefs.size());
+  add(Part::relief, description.reliefs.size());
   add(Part::instance, description.instances.size());
   add(Part::light, description.lights.size());
   add(Part::view, description.views.size());
@@ -229,9 +232,15 @@ void evaluate(SceneDescription& description, Affected what, double time_s, Scene
                                      glm::vec3(from.metal_n),
                                      glm::vec3(from.metal_k),
                                      static_cast<float>(from.ior),
-                                     glm::vec3(from.absorption)};
+                                     glm::vec3(from.absorption),
+                                     glm::vec3(from.scattering),
+                                     static_cast<float>(from.anisotropy)};
       return;
     }
+    case Part::relief_maps:
+      return evaluate_relief_maps(description, what.index, time_s, scene);
+    case Part::relief:
+      return evaluate_relief(description, what.index, scene);
     case Part::instance:
       return evaluate_instance(description, what.index, time_s, scene);
     case Part::light:

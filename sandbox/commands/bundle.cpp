@@ -14,9 +14,9 @@
 #include "algorithms/scene/files/asset_path.hpp"
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -160,9 +160,9 @@ int bundle(const Arguments& arguments) {
 
 }  // namespace
 
-void add_bundle(CLI::App& root, std::vector<Command>& commands) {
+void add_bundle(cli::App& root, std::vector<Command>& commands) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* app = root.add_subcommand("bundle", "Pack the program with its libraries for machines that have neither");
+  cli::App* app = root.add_subcommand("bundle", "Pack the program with its libraries for machines that have neither");
   app->add_option("-o,--output", arguments->output, "the archive, NAME.tar.xz")->required();
   app->add_option("--asset", arguments->assets, "an asset to take along, as meshes/bunny00.off; repeatable");
   app->footer(

@@ -30,7 +30,7 @@ double frame_ms(const std::function<void()>& draw, int frames) {
   const FrameClock::Draw subject = [&](gl::PassTimer& timer) {
     timer.begin_frame();
     {
-      const auto pass = timer.pass("ceiling");
+      const gl::PassTimer::Pass pass = timer.pass("ceiling");
       draw();
     }
     timer.end_frame();

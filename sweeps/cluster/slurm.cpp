@@ -10,7 +10,7 @@
 
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sweeps {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -35,6 +36,15 @@ void QuietLock::wait_to_time() {
 }
 void QuietLock::release() {
   take(LOCK_UN);
+}
+
+QuietFile::QuietFile(bool needed) {
+  if (needed) path_ = std::filesystem::temp_directory_path() / fmt::format("pellucid-quiet-{}", ::getpid());
+}
+
+QuietFile::~QuietFile() {
+  std::error_code error;
+  if (!path_.empty()) std::filesystem::remove(path_, error);
 }
 
 }  // namespace pellucid::sweeps

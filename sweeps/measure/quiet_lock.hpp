@@ -23,4 +23,17 @@ class QuietLock {
   int file_ = -1;
 };
 
+/// The parent's side: the name of such a file, unless it is not needed, and its end.
+class QuietFile {
+ public:
+  explicit QuietFile(bool needed);
+  ~QuietFile();
+  QuietFile(const QuietFile&) = delete;
+  QuietFile& operator=(const QuietFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }  ///< empty: not needed
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace pellucid::sweeps

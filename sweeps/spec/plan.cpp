@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <cassert>
 #include <random>
+#include <string_view>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/files/hash.hpp"
 #include "sweeps/spec/constraint.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/spec/spec_reader.hpp"
-#include "sweeps/store/provenance.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -36,7 +40,7 @@ std::pair<std::string, std::string> identity(const Point& point) {
                         {"parameters", nlohmann::json::object()},
                         {"scene", point.scene},
                         {"scene_hash", point.scene_hash},
-                        {"shader_hash", point.shader_hash},
+                        {"code_hash", point.code_hash},
                         {"view", point.view},
                         {"size", {point.size.width, point.size.height}},
                         {"metrics", point.metrics}};
@@ -213,7 +217,7 @@ class Expander {
       }
     }
     shared_.scene_hash = facts.content_hash;
-    shared_.shader_hash = shader_hash(technique);
+    shared_.code_hash = code_hash(technique);
     for (const ParameterInfo& i : table_) {
       shared_.parameters[i.name] = i.default_value;
       plan_.parameters.try_emplace(i.name, i);
@@ -257,7 +261,7 @@ class Expander {
 
   /// A scene's parameter may cost whatever is precomputed for the scene.
   static Change cost(const ParameterInfo& about) {
-    return about.name.starts_with("scene.") ? Change::precompute : about.when;
+    return route(about.name).owner == ParameterOwner::scene ? Change::precompute : about.when;
   }
   static std::string sharing_text(const std::string& name, const Value& value) {
     return fmt::format(" {}={}", name, to_text(value));
@@ -329,9 +333,9 @@ class Expander {
     sharing_.push_back(std::move(sharing));
   }
 
-  const std::string& shader_hash(const std::string& technique) {
-    const auto [at, is_new] = shader_hashes_.try_emplace(technique);
-    if (is_new) at->second = catalogue_.shader_hash(technique);
+  const std::string& code_hash(const std::string& technique) {
+    const auto [at, is_new] = code_hashes_.try_emplace(technique);
+    if (is_new) at->second = catalogue_.code_hash(technique);
     return at->second;
   }
 
@@ -384,7 +388,7 @@ class Expander {
   std::string text_;
 
   std::unordered_map<std::string, std::size_t> index_;
-  std::map<std::string, std::string> shader_hashes_;
+  std::map<std::string, std::string> code_hashes_;
   std::mt19937_64 random_{0x70656c6c75636964};  // "pellucid"
 };
 

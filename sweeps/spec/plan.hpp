@@ -23,7 +23,7 @@ struct Point {
   TimingLimits timing;
   ReferenceSettings reference;
   std::string scene_hash;  ///< of the scene at its defaults
-  std::string shader_hash;
+  std::string code_hash;
   Keep keep = Keep::nothing;  ///< no part of the id
 };
 

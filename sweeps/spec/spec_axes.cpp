@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
 #include "gl/error.hpp"
 #include "sweeps/spec/design.hpp"
@@ -29,7 +30,7 @@ struct Owners {
   };
   std::vector<Owner> owners_of(const std::string& name) const {
     std::vector<Owner> owners;
-    if (name.starts_with("scene.")) {
+    if (route(name).owner == ParameterOwner::scene) {
       for (const std::string& scene : block.scenes)
         owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
     } else if (const auto common = std::find_if(

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,6 +48,10 @@ std::string dump(const nlohmann::json& row) {
 }  // namespace
 
 Store::Store(const std::filesystem::path& path, Access access) {
+  // SQLite's own names for stores that are gone when they are closed.
+  if (const std::string name = path.string(); name.empty() || name == ":memory:" || name.starts_with("file:"))
+    throw InputError(
+        fmt::format("store '{}' would forget its rows; give a file's name (./{} for one called so)", name, name));
   if (access == Access::write) {
     std::error_code error;
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -113,12 +119,14 @@ void Store::remove_point(const std::string& point) {
 
 std::vector<StoredPoint> Store::points() const {
   std::vector<StoredPoint> result;
-  Statement statement(state_->database,
-                      "SELECT id, failed, device, driver, json_extract(row, '$.commit'), json_extract(row, '$.wall_s') "
-                      "FROM points WHERE json_valid(row) ORDER BY id, device, driver");
+  Statement statement(
+      state_->database,
+      "SELECT id, failed, json_extract(row, '$.technique'), json_extract(row, '$.code_hash'), device, driver, "
+      "json_extract(row, '$.commit'), json_extract(row, '$.wall_s') "
+      "FROM points WHERE json_valid(row) ORDER BY id, device, driver");
   while (statement.step()) {
     result.push_back({statement.text(0), statement.integer(1) != 0, statement.text(2), statement.text(3),
-                      statement.text(4), statement.real(5)});
+                      statement.text(4), statement.text(5), statement.text(6), statement.real(7)});
   }
   return result;
 }

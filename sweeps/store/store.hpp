@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +50,11 @@ struct RunRecord {
   std::size_t points = 0;
 };
 
+/// What a field of a row means, for the table `columns`.
+struct ColumnMeaning {
+  std::string unit, description;
+};
+
 /// A row as it stands in the file.
 struct StoredRow {
   std::string id, device, driver;
@@ -67,6 +74,7 @@ struct StoredPlan {
 struct StoredPoint {
   std::string id;
   bool failed = false;
+  std::string technique, code_hash;    ///< the hash is empty in rows of versions that did not know it
   std::string device, driver, commit;  ///< empty for a point that failed before its worker said hello
   double wall_s = 0;
 };
@@ -88,6 +96,8 @@ class Store {
   /// (README.md); its `status` is "ok" or "failed", its `device` and `driver` say whose times it holds.
   void put_row(const std::string& point, const nlohmann::json& row, std::span<const double> frame_ms_samples);
   void put_baseline(const std::string& sweep, const BaselineSample&);
+  /// Told before rows are put: what their results mean. Parameters are known from the plan.
+  void explain(std::map<std::string, ColumnMeaning> meanings);
   void remove_point(const std::string& point);
   /// Adds a run and gives its number; update_run() brings its times and points up to date.
   std::int64_t add_run(const RunRecord&);

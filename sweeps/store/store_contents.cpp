@@ -1,4 +1,6 @@
 // The contents of a store as they stand in the file: what merging reads and writes, and the records of runs.
+#include <utility>
+
 #include "sweeps/store/store_state.hpp"
 
 namespace pellucid::sweeps {
@@ -167,6 +169,10 @@ void Store::update_run(std::int64_t id, const RunRecord& run) {
         .bind(8, static_cast<std::int64_t>(run.points))
         .step();
   });
+}
+
+void Store::explain(std::map<std::string, ColumnMeaning> meanings) {
+  state_->view.explain(std::move(meanings));
 }
 
 void Store::note_columns(const nlohmann::json& row) {

@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sweeps {
 namespace {

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/quantities/quantities.hpp"
 #include "sweeps/store/store.hpp"
 
 namespace pellucid::sweeps {
@@ -175,8 +174,9 @@ void ResultsView::note(const std::string& name, const json& value) {
   const std::string type = sql_type(value);
   const auto known = known_.find(name);
   if (known == known_.end()) {
-    const Quantity* declared = find_quantity(name);
-    describe(name, type, "result", declared != nullptr ? declared->unit : "", declared != nullptr ? declared->doc : "");
+    const auto meaning = meanings_.find(name);
+    const ColumnMeaning known_as = meaning != meanings_.end() ? meaning->second : ColumnMeaning{};
+    describe(name, type, "result", known_as.unit, known_as.description);
     return;
   }
   if (known->second == type || known->second == "TEXT") return;

@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/store/sqlite.hpp"
+#include "sweeps/store/store.hpp"
 
 /// The tables of a store. For the room store/ alone.
 namespace pellucid::sweeps {
@@ -30,6 +32,8 @@ class ResultsView {
   void describe(const Plan&);
   void describe(const std::string& name, const std::string& type, const std::string& kind, const std::string& unit,
                 const std::string& description);
+  /// What columns of results mean, for those that come later.
+  void explain(std::map<std::string, ColumnMeaning> meanings) { meanings_ = std::move(meanings); }
   /// Adds the columns that are new with this row.
   void add(const nlohmann::json& row);
   /// Makes the view anew if a column has been added or has changed.
@@ -42,6 +46,7 @@ class ResultsView {
   bool loaded_ = false;
   bool stale_ = false;
   std::map<std::string, std::string> known_;  // type by name
+  std::map<std::string, ColumnMeaning> meanings_;
 };
 
 }  // namespace pellucid::sweeps

@@ -10,18 +10,20 @@
 #include <mutex>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/measure/quiet_lock.hpp"
+#include "sweeps/quantities/quantities.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/stop_signals.hpp"
 #include "sweeps/workers/worker_client.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -48,6 +50,8 @@ std::string outcome_text(const json& row) {
   if (row.contains("frame_ms_median")) {
     text = fmt::format("{:.3g} ms", row.at("frame_ms_median").get<double>());
     if (row.value("timing", "") == "unconverged") text += " (unconverged)";
+    if (const auto saturated = row.value("saturated_pixels", 0); saturated > 0)
+      text += fmt::format(" ({} pixels saturate 16-bit floats)", saturated);
   }
   for (const char* metric : {"flip_mean", "rmse"}) {
     if (row.contains(metric))
@@ -65,24 +69,6 @@ std::string flaw(const json& row, const Point& point) {
   }
   return "";
 }
-
-/// A file that the workers of several devices share, gone with the sweep (measure/quiet_lock.hpp).
-class QuietFile {
- public:
-  explicit QuietFile(bool needed) {
-    if (needed) path_ = std::filesystem::temp_directory_path() / fmt::format("pellucid-quiet-{}", ::getpid());
-  }
-  ~QuietFile() {
-    std::error_code error;
-    if (!path_.empty()) std::filesystem::remove(path_, error);
-  }
-  QuietFile(const QuietFile&) = delete;
-  QuietFile& operator=(const QuietFile&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 class Runner {
  public:
@@ -103,6 +89,10 @@ class Runner {
 
   SweepSummary run() {
     const auto start = SteadyClock::now();
+    std::map<std::string, ColumnMeaning> meanings;
+    for (const Quantity& quantity : quantities())
+      meanings[quantity.name] = {quantity.unit, quantity.doc};
+    store_.explain(std::move(meanings));
     store_.put_plan(spec_, plan_);
     for (const std::size_t index : plan_.order) {
       const Point& point = plan_.points[index];
@@ -393,7 +383,7 @@ class Runner {
     row["host"] = record_.host;
     if (!row.contains("clock")) row["clock"] = hello.clock;
     if (!row.contains("scene_hash")) row["scene_hash"] = point.scene_hash;
-    row["shader_hash"] = point.shader_hash;
+    row["code_hash"] = point.code_hash;
     row["commit"] = kCommit;
     row["dirty"] = kDirty;
     row["argv"] = argv_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sweeps/spec/point_json.hpp"
 #include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/run.hpp"
 #include "sweeps/workers/stop_signals.hpp"

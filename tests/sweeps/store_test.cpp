@@ -1,7 +1,13 @@
 #include "sweeps/store/store.hpp"
 
+#include <cstddef>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +15,7 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/sqlite.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
@@ -98,7 +104,7 @@ TEST(Store, AChangedPlanHidesOldRowsAndKeepsThem) {
   const TemporaryFolder folder;
   Example e;
   fill(folder / "s.db", e);
-  e.catalogue.shaders = "other";
+  e.catalogue.code = "other";
   {
     Store store(folder / "s.db", Access::write);
     store.put_plan(e.spec, make_plan(e.spec, e.catalogue));

@@ -1,6 +1,11 @@
 // Caustics: where the photons' power ends.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -8,7 +13,7 @@
 
 #include "algorithms/distance_impostors/caustics.hpp"
 #include "algorithms/distance_impostors/light_map_chart.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "tests/algorithms/rendered.hpp"
 
@@ -122,7 +127,7 @@ std::unique_ptr<Landed> land(const Scene& scene, const distance_impostors::Caust
   const MapSettings maps{.cube_size = 256};
   const LookupSettings lookup{.search = {8, Scheme::false_position, 64}};
   auto landed = std::make_unique<Landed>();
-  landed->objects.prepare(scene, maps, true, "test");
+  landed->objects.prepare(scene, maps, lookup, "test");
   landed->caustics.prepare(scene, settings, maps, landed->objects);
   const auto due = landed->objects.due(scene, maps);
   landed->objects.draw_maps(scene, forward, maps, lookup, due);

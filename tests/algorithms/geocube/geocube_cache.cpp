@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/geocube/cache.hpp"
+#include "algorithms/scene/files/cache_file.hpp"
 #include "tests/algorithms/geocube/geocube_solids.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
 
@@ -111,7 +112,7 @@ TEST_F(GeocubeCache, PlacesAreKeptToo) {
 TEST(GeocubeCacheFolder, FollowsTheEnvironment) {
   const auto with = [](const char* value) {
     ::setenv("PELLUCID_CACHE", value, 1);
-    return cache_folder();
+    return cache_folder("geocube");
   };
   const char* before = std::getenv("PELLUCID_CACHE");
   const std::string kept = before != nullptr ? before : "";

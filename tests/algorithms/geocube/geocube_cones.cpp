@@ -96,7 +96,7 @@ TEST(GeocubeCones, EveryCellOfTheTreeMayBeLeftOutUnseen) {  // the full comparis
                                          solid.tree().corners(t)));
       }
       EXPECT_GE(widened(layer.bounds[i].y), a - 2e-4) << shape.name << ' ' << i;
-      EXPECT_LE(widened(layer.bounds[i].y), a_or_base + kSlack * (1 - a_or_base) + 2e-4) << shape.name << ' ' << i;
+      EXPECT_LE(widened(layer.bounds[i].y), a_or_base + 2e-4) << shape.name << ' ' << i;
       EXPECT_NEAR(widened(layer.bounds[i].z), std::max(b, 0.0), 1e-5) << shape.name << ' ' << i;
       EXPECT_LE(widened(layer.bounds[i].w), c + 1e-6) << shape.name << ' ' << i;
       EXPECT_GE(widened(layer.bounds[i].w), std::min(c, set.diagonal) * (1 - kConeSlack) - 1e-6)

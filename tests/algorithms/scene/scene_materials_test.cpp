@@ -100,7 +100,7 @@ TEST_F(SceneMaterials, ErrorsNamePlaceAndReason) {
       {"[materials.m]\nkind = \"dielectric\"\nior = [1, 1, 1]\n", "7:7: materials.m.ior must be a number, not a list"},
       {"[materials.m]\nkind = \"dielectric\"\nabsorption = -1\n", "7:14: materials.m.absorption = -1 is out of range"},
       {"[materials.m]\nkind = \"dielectric\"\nalbedo = 0.5\n",
-       "7:1: unknown key 'albedo' in materials.m; known are kind, ior, absorption"},
+       "7:1: unknown key 'albedo' in materials.m; known are kind, ior, absorption, scattering, anisotropy"},
       {"[materials.m]\nkind = \"mirror\"\nreflectance = 1.5\n",
        "7:15: materials.m.reflectance = 1.5 is out of range [0, 1]"},
       {"[materials.m]\nkind = \"mirror\"\nior = 1.5\n",
