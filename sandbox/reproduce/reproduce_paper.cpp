@@ -74,7 +74,7 @@ void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder
                        .summary = {},
                        .rows = {}};
     sweeps::RunOptions run;
-    run.device = options.device;
+    if (options.device) run.devices = {*options.device};
     run.references = folder / "references";  // one paper's sweeps look at the same scenes
     sweep.summary = sweeps::run_sweep(spec, sweep.store, run);
     if (sweep.summary.interrupted) throw RuntimeError("interrupted; the same command goes on where this one stopped");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/papers/paper.hpp"
 #include "sweeps/store/csv.hpp"
+#include "sweeps/store/select.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/tables/tables.hpp"
 
@@ -25,6 +27,8 @@ using namespace pellucid::sweeps;
 
 struct ResultsOptions {
   std::string store, format = "csv";
+  std::vector<std::string> where, columns;
+  bool samples = false;
 };
 
 struct TableOptions {
@@ -40,13 +44,29 @@ void print_out(const std::string& text) {
 }
 
 int results(const ResultsOptions& options) {
-  const std::vector<nlohmann::json> rows = read_rows(options.store);
+  std::vector<RowCondition> conditions;
+  for (const std::string& text : options.where)
+    conditions.push_back(parse_row_condition(text));
+  const std::vector<nlohmann::json> rows = select_rows(read_rows(options.store, options.samples), conditions);
+  const auto line = [](const auto& json, int indent) {
+    return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  };
+  const auto print_json = [&](const auto& chosen) {
+    if (options.format == "json") {
+      print_out(line(typename std::decay_t<decltype(chosen)>::value_type(chosen), 2));
+      return;
+    }
+    for (const auto& row : chosen)
+      print_out(line(row, -1));
+  };
   if (options.format == "csv") {
-    print_out(rows_to_csv(rows));
-    return kDone;
+    if (!options.columns.empty()) select_fields(rows, options.columns);  // complains about unknown names
+    print_out(options.columns.empty() ? rows_to_csv(rows) : rows_to_csv(rows, options.columns));
+  } else if (options.columns.empty()) {
+    print_json(rows);
+  } else {
+    print_json(select_fields(rows, options.columns));
   }
-  const nlohmann::json all(rows);
-  print_out(all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return kDone;
 }
 
@@ -98,13 +118,19 @@ void add_results(cli::App& root, std::vector<Command>& commands) {
   auto rows = std::make_shared<ResultsOptions>();
   cli::App* results_app = root.add_subcommand("results", "Print every row of a store, failed ones included");
   results_app->add_option("store", rows->store, "the SQLite file of a sweep")->required();
-  results_app->add_option("--format", rows->format, "csv or json")
-      ->check(cli::IsMember({"csv", "json"}))
+  results_app->add_option("--where", rows->where,
+                          "only rows that meet field=value, or with !=, <, <=, > or >=; repeatable, all must hold");
+  results_app->add_option("--columns", rows->columns, "only these fields, as --columns hulls,samples,fps")
+      ->delimiter(',');
+  results_app->add_flag("--samples", rows->samples, "every frame time too, as frame_ms_samples");
+  results_app->add_option("--format", rows->format, "csv, json (a list) or jsonl (an object a line)")
+      ->check(cli::IsMember({"csv", "json", "jsonl"}))
       ->capture_default_str();
   add_json_flag(*results_app, rows->format);
   results_app->footer(
       "Examples:\n"
       "  pellucid results results/hulls.db > hulls.csv\n"
+      "  pellucid results results/hulls.db --where 'hulls>=4' --columns hulls,samples,fps,rmse\n"
       "  pellucid results results/hulls.db --format json | jq '.[] | [.hulls, .samples, .fps]'");
   commands.push_back({results_app, [rows] { return results(*rows); }});
 
