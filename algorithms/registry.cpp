@@ -1,48 +1,109 @@
 #include <array>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "algorithms/bare_frame.hpp"
+#include "algorithms/distance_impostors/bench/bare_impostors.hpp"
 #include "algorithms/distance_impostors/distance_impostors.hpp"
 #include "algorithms/environment_map/environment_map.hpp"
 #include "algorithms/front_refraction/front_refraction.hpp"
+#include "algorithms/geocube/bench/bare_glass.hpp"
 #include "algorithms/geocube/geocube.hpp"
 #include "algorithms/ray_marching/ray_marching.hpp"
+#include "algorithms/sampling_hulls/bench/bare_hulls.hpp"
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
 #include "algorithms/technique.hpp"
+#include "algorithms/translucent_relief/translucent_relief.hpp"
 #include "algorithms/volume_slices/volume_slices.hpp"
 
 namespace pellucid {
 
 // One line for each paper or baseline; the other is in CMakeLists.txt.
 static const std::array kTechniques{
-    TechniqueInfo{"distance_impostors", "Distance impostors", "szirmaykalos2005", false,
-                  "reflection and refraction by searching for rays' hits in cube maps of radiance and distance",
-                  distance_impostors::table, distance_impostors::make, true, true, true},
-    TechniqueInfo{"environment_map", "Environment map", "blinn1976", true,
-                  "classical environment mapping, or with a box or sphere as proxy geometry", environment_map::table,
-                  environment_map::make, true},
-    TechniqueInfo{"front_refraction", "Front refraction", "chan2005", true,
-                  "refraction where the eye's ray enters, and nowhere else", front_refraction::table,
-                  front_refraction::make, true},
-    TechniqueInfo{"geocube", "Geocube", "chan2005", false,
-                  "refraction at both sides and internal reflection by cube maps of distances and cones",
-                  geocube::table, geocube::make, true, true},
-    TechniqueInfo{"sampling_hulls", "Sampling hulls", "imagire2007", false,
-                  "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
-                  sampling_hulls::table, sampling_hulls::make},
-    TechniqueInfo{"ray_marching", "Ray marching", "kruger2003", true,
-                  "the volume in one pass, N points on each ray, with interleaved jitter if wanted",
-                  ray_marching::table, ray_marching::make},
-    TechniqueInfo{"screen_space_refraction", "Screen-space refraction", "wyman2005", true,
-                  "refraction at two interfaces, the far side as the screen shows it", screen_space_refraction::table,
-                  screen_space_refraction::make, true},
-    TechniqueInfo{"volume_slices", "Slices", "cullip1994", true,
-                  "the slice-based baseline: one plane a step, blended back to front", volume_slices::table,
-                  volume_slices::make},
+    TechniqueInfo{.name = "distance_impostors",
+                  .title = "Distance impostors",
+                  .reference = "szirmaykalos2005",
+                  .doc = "reflection and refraction by searching for rays' hits in cube maps of radiance and distance",
+                  .table = distance_impostors::table,
+                  .make = distance_impostors::make,
+                  .interfaces = true,
+                  .maps = true,
+                  .classes = true},
+    TechniqueInfo{.name = "environment_map",
+                  .title = "Environment map",
+                  .reference = "blinn1976",
+                  .baseline = true,
+                  .doc = "classical environment mapping, or with a box or sphere as proxy geometry",
+                  .table = environment_map::table,
+                  .make = environment_map::make,
+                  .interfaces = true},
+    TechniqueInfo{.name = "front_refraction",
+                  .title = "Front refraction",
+                  .reference = "chan2005",
+                  .baseline = true,
+                  .doc = "refraction where the eye's ray enters, and nowhere else",
+                  .table = front_refraction::table,
+                  .make = front_refraction::make,
+                  .interfaces = true},
+    TechniqueInfo{.name = "geocube",
+                  .title = "Geocube",
+                  .reference = "chan2005",
+                  .doc = "refraction at both sides and internal reflection by cube maps of distances and cones",
+                  .table = geocube::table,
+                  .make = geocube::make,
+                  .interfaces = true,
+                  .maps = true},
+    TechniqueInfo{.name = "sampling_hulls",
+                  .title = "Sampling hulls",
+                  .reference = "imagire2007",
+                  .doc = "anti-aliased volumes: M hulls parallel to the screen, N points on the valid path in each",
+                  .table = sampling_hulls::table,
+                  .make = sampling_hulls::make},
+    TechniqueInfo{.name = "ray_marching",
+                  .title = "Ray marching",
+                  .reference = "kruger2003",
+                  .baseline = true,
+                  .doc = "the volume in one pass, N points on each ray, with interleaved jitter if wanted",
+                  .table = ray_marching::table,
+                  .make = ray_marching::make},
+    TechniqueInfo{.name = "screen_space_refraction",
+                  .title = "Screen-space refraction",
+                  .reference = "wyman2005",
+                  .baseline = true,
+                  .doc = "refraction at two interfaces, the far side as the screen shows it",
+                  .table = screen_space_refraction::table,
+                  .make = screen_space_refraction::make,
+                  .interfaces = true},
+    TechniqueInfo{.name = "translucent_relief",
+                  .title = "Translucent relief",
+                  .reference = "timonen",
+                  .doc = "a translucent layer over a solid, height fields under a mesh: refraction, reflection, light "
+                         "occlusion",
+                  .table = translucent_relief::table,
+                  .make = translucent_relief::make,
+                  .maps = true,
+                  .reliefs = true},
+    TechniqueInfo{.name = "volume_slices",
+                  .title = "Slices",
+                  .reference = "cullip1994",
+                  .baseline = true,
+                  .doc = "the slice-based baseline: one plane a step, blended back to front",
+                  .table = volume_slices::table,
+                  .make = volume_slices::make},
 };
+
+// One line for each technique that `pellucid bench` can time; the order is that of the help text.
+static const BareFrameInfo* const kBareFrames[] = {&sampling_hulls::bare_frame(), &distance_impostors::bare_frame(),
+                                                   &geocube::bare_frame()};
+
+std::span<const BareFrameInfo* const> bare_frames() {
+  return kBareFrames;
+}
 
 std::span<const TechniqueInfo> techniques() {
   return kTechniques;

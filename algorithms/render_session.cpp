@@ -1,22 +1,24 @@
 #include "algorithms/render_session.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <limits>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/forward_pass.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid {
 namespace {
-
-constexpr std::string_view kScenePrefix = "scene.";
-constexpr std::string_view kFramePrefix = "frame.";
-constexpr std::string_view kShadowPrefix = "shadow.";
 
 nlohmann::json to_json(const Value& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
@@ -35,18 +37,27 @@ Image flipped(const std::vector<float>& texels, int width, int height, int strid
   return image;
 }
 
+std::string techniques_that(bool TechniqueInfo::*draw) {
+  std::string able;
+  for (const TechniqueInfo& other : techniques()) {
+    if (other.*draw) able += (able.empty() ? "" : ", ") + std::string(other.name);
+  }
+  return able.empty() ? "none" : able;
+}
+
 // A frame that silently lacks an object is worse than none.
 void check_drawable(const Scene& scene, const TechniqueInfo& info) {
-  if (info.interfaces) return;
   for (const Instance& instance : scene.instances) {
-    if (!optical(scene, instance)) continue;
-    std::string able;
-    for (const TechniqueInfo& other : techniques()) {
-      if (other.interfaces) able += (able.empty() ? "" : ", ") + std::string(other.name);
+    if (instance.relief >= 0 && !info.reliefs) {
+      throw InputError(
+          fmt::format("technique '{}' draws no reliefs, and '{}' of scene '{}' carries one; those that do: {}",
+                      info.name, instance.name, scene.name, techniques_that(&TechniqueInfo::reliefs)));
     }
-    throw InputError(fmt::format(
-        "technique '{}' draws no mirrors, metals or dielectrics, and '{}' of scene '{}' is one; those that do: {}",
-        info.name, instance.name, scene.name, able.empty() ? "none" : able));
+    if (material_of(scene, instance).optical() && !info.interfaces) {
+      throw InputError(fmt::format(
+          "technique '{}' draws no mirrors, metals or dielectrics, and '{}' of scene '{}' is one; those that do: {}",
+          info.name, instance.name, scene.name, techniques_that(&TechniqueInfo::interfaces)));
+    }
   }
 }
 
@@ -79,19 +90,17 @@ struct RenderSession::State {
   State(Scene loaded, std::string_view technique_name)
       : scene(std::move(loaded)), info(&find_technique(technique_name)), technique(info->make()), forward(scene) {}
 
-  /// The table that `name` belongs to, and `name` without its prefix.
-  std::pair<ParameterRef, std::string> owner(std::string_view& name) {
-    if (name.starts_with(kScenePrefix)) {
-      name.remove_prefix(kScenePrefix.size());
-      return {scene.parameters(), "scene " + scene.name};
-    }
-    if (name.starts_with(kFramePrefix)) {
-      name.remove_prefix(kFramePrefix.size());
-      return {bind_parameters(frame), "frame"};
-    }
-    if (name.starts_with(kShadowPrefix)) {
-      name.remove_prefix(kShadowPrefix.size());
-      return {bind_parameters(shadow), "shadow"};
+  /// An owner's table, and its name in messages.
+  std::pair<ParameterRef, std::string> table_of(ParameterOwner owner) {
+    switch (owner) {
+      case ParameterOwner::scene:
+        return {scene.parameters(), "scene " + scene.name};
+      case ParameterOwner::frame:
+        return {bind_parameters(frame), "frame"};
+      case ParameterOwner::shadow:
+        return {bind_parameters(shadow), "shadow"};
+      case ParameterOwner::technique:
+        break;
     }
     return {technique->parameters(), std::string(info->name)};
   }
@@ -161,7 +170,7 @@ struct RenderSession::State {
 RenderSession::RenderSession(Scene scene, std::string_view technique, std::string_view view, int width, int height)
     : state_(std::make_unique<State>(std::move(scene), technique)) {
   check_drawable(state_->scene, *state_->info);
-  state_->camera.view = state_->scene.find_view(view);
+  state_->camera.view = view_of(state_->scene, view);
   resize(width, height);
 }
 RenderSession::~RenderSession() = default;
@@ -169,36 +178,35 @@ RenderSession::RenderSession(RenderSession&&) noexcept = default;
 RenderSession& RenderSession::operator=(RenderSession&&) noexcept = default;
 
 Change RenderSession::assign(std::string_view name, const Value& value) {
-  const auto [table, owner] = state_->owner(name);
-  const bool of_scene = table.object == &state_->scene;
-  const Change change = table.assign(name, value, owner);
+  const ParameterName routed = route(name);
+  const auto [table, owner] = state_->table_of(routed.owner);
+  const bool of_scene = routed.owner == ParameterOwner::scene;
+  const Change change = table.assign(routed.local, value, owner);
   if (change == Change::precompute) {
     state_->prepared = false;
     state_->meshes_changed = state_->meshes_changed || of_scene;
   }
   // A view may be animated by the scene's parameters.
-  state_->camera.view = state_->scene.find_view(state_->camera.view.name);
+  state_->camera.view = view_of(state_->scene, state_->camera.view.name);
   return change;
 }
 
 Change RenderSession::assign_text(std::string_view name, std::string_view text) {
-  std::string_view local = name;
-  const auto [table, owner] = state_->owner(local);
-  const ParameterInfo* info = table.table->find(local);
-  if (info == nullptr) throw unknown_parameter(local, owner, table.infos());
+  const ParameterName routed = route(name);
+  const auto [table, owner] = state_->table_of(routed.owner);
+  const ParameterInfo* info = table.table->find(routed.local);
+  if (info == nullptr) throw unknown_parameter(routed.local, owner, table.infos());
   return assign(name, parse_value(*info, text, owner));
 }
 
 nlohmann::json RenderSession::parameters() const {
   nlohmann::json all = nlohmann::json::object();
-  auto add = [&](std::string_view prefix, const ParameterRef& table) {
+  for (const ParameterOwner owner :
+       {ParameterOwner::technique, ParameterOwner::scene, ParameterOwner::frame, ParameterOwner::shadow}) {
+    const ParameterRef table = state_->table_of(owner).first;
     for (const ParameterInfo& info : table.infos())
-      all[std::string(prefix) + info.name] = to_json(table.get(info.name));
-  };
-  add("", state_->technique->parameters());
-  add(kScenePrefix, state_->scene.parameters());
-  add(kFramePrefix, bind_parameters(state_->frame));
-  add(kShadowPrefix, bind_parameters(state_->shadow));
+      all[full_name(owner, info.name)] = to_json(table.get(info.name));
+  }
   return all;
 }
 

@@ -68,6 +68,7 @@ struct TechniqueInfo {
   bool interfaces = false;  ///< draws mirrors, metals and dielectrics; the others refuse a scene that has some
   bool maps = false;        ///< tells its errors by pixel: Technique::native_maps()
   bool classes = false;     ///< one of these is a map of classes
+  bool reliefs = false;     ///< draws height fields under meshes; the others refuse a scene that has some
 };
 
 /// Every technique, in registry.cpp's order.

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <map>
 #include <mutex>
+#include <tuple>
 #include <utility>
 
 #include <EGL/egl.h>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "gl/current_context.hpp"
+#include "gl/egl_devices.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::gl {
@@ -18,13 +20,6 @@ namespace pellucid::gl {
 namespace {
 
 constexpr int kSurfaceless = -1;
-
-bool has_extension(EGLDisplay display, std::string_view name) {
-  const char* text = eglQueryString(display, EGL_EXTENSIONS);
-  if (text == nullptr) return false;
-  const std::string padded = fmt::format(" {} ", text);
-  return padded.find(fmt::format(" {} ", name)) != std::string::npos;
-}
 
 std::string egl_error() {
   switch (const EGLint error = eglGetError()) {
@@ -51,23 +46,6 @@ std::string egl_error() {
     default:
       return fmt::format("EGL error {:#x}", error);
   }
-}
-
-template <class Function>
-Function load(const char* name) {
-  return reinterpret_cast<Function>(eglGetProcAddress(name));
-}
-
-std::vector<EGLDeviceEXT> egl_devices() {
-  const auto query = load<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-  const bool enumerates = has_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
-                          has_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base");
-  EGLint count = 0;
-  if (!enumerates || query == nullptr || query(0, nullptr, &count) == EGL_FALSE || count <= 0) return {};
-  std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
-  if (query(count, devices.data(), &count) == EGL_FALSE) return {};
-  devices.resize(static_cast<std::size_t>(count));
-  return devices;
 }
 
 // EGL hands out one display per device, and eglTerminate ends it for everybody: count who uses it.
@@ -107,7 +85,7 @@ struct Opened {
 };
 
 EGLDisplay platform_display(EGLenum platform, void* native) {
-  const auto get = load<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+  const auto get = load_egl<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
   const EGLDisplay display = get != nullptr ? get(platform, native, nullptr) : EGL_NO_DISPLAY;
   if (display == EGL_NO_DISPLAY) throw RuntimeError(fmt::format("EGL gives no display: {}", egl_error()));
   return display;

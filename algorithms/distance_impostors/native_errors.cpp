@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
 #include "algorithms/raster/native_map.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 
 namespace pellucid::distance_impostors {
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include "algorithms/raster/mirror.hpp"
 #include "algorithms/raster/pixel_area.hpp"
@@ -84,7 +86,7 @@ FetchCounts GlassPass::count_fetches(const Scene& scene, const Camera& camera, c
     throw InputError(
         "bench: the bare shader of geocube does not count what a scattering medium fetches: transfer = none");
   gl::Defines defines = defines_;
-  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/shaders/bench/bare_glass.frag.glsl"}, defines);
+  bare_ = gl::Program("bare glass", {kFullscreen, "algorithms/geocube/bench/bare_glass.frag.glsl"}, defines);
   defines.emplace_back("COUNT", "1");
   const gl::Program count("geocube counts", {kFullscreen, kGlass}, defines);
   forward.bind_environment(count);

@@ -65,6 +65,15 @@ void RayTree::push(Branch child, const glm::dvec3& weight, const TreeLimits& lim
   scratch.push_back(child);
 }
 
+// On behind the triangle, as if it were not there.
+void RayTree::pass(const Branch& parent, const Hit& hit, const SurfacePoint& point, Scratch& scratch) const {
+  Branch child = parent;
+  child.from = hit;
+  child.start = point.position;
+  child.face = -point.face;
+  scratch.push_back(child);
+}
+
 void RayTree::branch(const Branch& parent, const Hit& hit, const SurfacePoint& point, const TreeLimits& limits,
                      Scratch& scratch, TreeTally& tally) const {
   const Material& material = material_of(*scene_, *hit.instance);

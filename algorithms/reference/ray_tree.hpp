@@ -82,9 +82,18 @@ class RayTree {
 
   /// Calls diffuse(hit, point, direction, weight) where a branch ends at a Lambertian surface and
   /// miss(direction, weight) where it leaves the scene. Returns the first hit of the root.
+  /// relief(hit, point, direction, weight) where one meets a mesh that carries a relief: true if it ends there, else it
+  /// goes on behind the mesh.
+  template <class Diffuse, class Miss, class Relief>
+  Hit trace(const TreeRay& root, const TreeLimits& limits, Scratch& scratch, TreeTally& tally, Diffuse diffuse,
+            Miss miss, Relief relief) const;
+  /// The same; branches end at reliefs.
   template <class Diffuse, class Miss>
   Hit trace(const TreeRay& root, const TreeLimits& limits, Scratch& scratch, TreeTally& tally, Diffuse diffuse,
-            Miss miss) const;
+            Miss miss) const {
+    return trace(root, limits, scratch, tally, diffuse, miss,
+                 [](const Hit&, const SurfacePoint&, const glm::dvec3&, const glm::dvec3&) { return true; });
+  }
 
   /// The dielectrics that a point lies in, by the surfaces that a ray from it crosses.
   Solids solids_at(const glm::dvec3& point) const;
@@ -93,6 +102,7 @@ class RayTree {
   void branch(const Branch& parent, const Hit& hit, const SurfacePoint& point, const TreeLimits& limits,
               Scratch& scratch, TreeTally& tally) const;
   void push(Branch child, const glm::dvec3& weight, const TreeLimits& limits, Scratch& scratch, TreeTally& tally) const;
+  void pass(const Branch& parent, const Hit& hit, const SurfacePoint& point, Scratch& scratch) const;
   glm::dvec3 absorbed(const Branch& branch, double path_m) const;
 
   const Scene* scene_;
@@ -103,9 +113,9 @@ inline double worst(const glm::dvec3& weight) {
   return glm::max(weight.x, glm::max(weight.y, weight.z));
 }
 
-template <class Diffuse, class Miss>
+template <class Diffuse, class Miss, class Relief>
 Hit RayTree::trace(const TreeRay& root, const TreeLimits& limits, Scratch& scratch, TreeTally& tally, Diffuse diffuse,
-                   Miss miss) const {
+                   Miss miss, Relief relief) const {
   scratch.clear();
   Branch current;
   current.start = root.origin;
@@ -127,10 +137,13 @@ Hit RayTree::trace(const TreeRay& root, const TreeLimits& limits, Scratch& scrat
       miss(current.direction, current.weight);
     } else {
       const SurfacePoint point = surface_at(*scene_, *geometry_, hit, current.start, current.direction);
-      if (optical(*scene_, *hit.instance))
+      if (hit.instance->relief >= 0) {
+        if (!relief(hit, point, current.direction, current.weight)) pass(current, hit, point, scratch);
+      } else if (optical(*scene_, *hit.instance)) {
         branch(current, hit, point, limits, scratch, tally);
-      else
+      } else {
         diffuse(hit, point, current.direction, current.weight);
+      }
     }
     if (scratch.empty()) return first;
     current = scratch.back();

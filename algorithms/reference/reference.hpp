@@ -13,7 +13,7 @@
 /// integrates the medium in float64.
 namespace pellucid {
 
-/// True if an instance of the scene is a mirror, a metal or a dielectric.
+/// True if an instance of the scene is a mirror, a metal or a dielectric, or carries a relief.
 bool has_interfaces(const Scene&);
 
 /// How trace_surfaces() samples pixels and follows light at interfaces.
@@ -37,6 +37,7 @@ struct SurfaceOptions {
   double cut = 1e-4;             ///< a branch of less weight is left out
   bool entry_reflection = true;  ///< follow what is reflected at the outside of dielectrics
   bool both_sides = true;        ///< false: refraction at the front alone; rays leave unbent, unreflected
+  bool refract_light = false;    ///< at reliefs' media; the paper's light goes straight (relief_tracer.hpp)
   /// Light that reaches Lambertian surfaces through objects, from photons (photons.hpp) by a density estimate.
   bool caustics = false;
   std::uint64_t photons = std::uint64_t{1} << 20;  ///< for each light that casts shadows and each optical object

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
@@ -16,12 +17,13 @@
 
 #include "algorithms/reference/geometry.hpp"
 #include "algorithms/reference/partial_picture.hpp"
-#include "algorithms/reference/photon_map.hpp"
-#include "algorithms/reference/photon_source.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photon_map.hpp"
+#include "algorithms/reference/photons/photon_source.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "algorithms/reference/pixel_samples.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"
+#include "algorithms/reference/relief_surfaces.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/reference/surface_point.hpp"
 #include "algorithms/reference/translucent_path.hpp"
@@ -112,6 +114,10 @@ std::optional<PhotonMap> trace_caustics(const Scene& scene, const SurfaceOptions
 }
 
 void check_traceable(const Scene& scene, const SurfaceOptions& options) {
+  if (!scene.reliefs.empty() && has_scattering(scene)) {
+    throw InputError(fmt::format(
+        "scene '{}' has reliefs and a solid that scatters: the reference does not trace them together", scene.name));
+  }
   if (!scene.volume) return;
   if (has_interfaces(scene)) {
     throw InputError(
@@ -142,6 +148,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   const RayTree tree(scene, geometry);
   const TranslucentPath walks(scene, geometry);
   const bool translucent = has_scattering(scene);
+  const ReliefSurfaces reliefs(scene, geometry, light, {options.refract_light});
   SurfaceLayer layer;
   SurfaceStatistics& statistics = layer.statistics;
   statistics.samples = options.samples;
@@ -204,13 +211,19 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
       const auto unlit = [&](const glm::dvec3& direction, const glm::dvec3& weight) {
         sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
       };
+      const auto seen_relief = [&](const Hit& hit, const SurfacePoint& point, const glm::dvec3& direction,
+                                   const glm::dvec3& weight) {
+        const auto seen = reliefs.seen(hit, point, direction, tally.rays);
+        if (seen) sample += weight * seen->radiance;
+        return seen.has_value();
+      };
       const TreeRay ray = through(x + place.x, y + place.y);
       Hit first;
       if (translucent) {
         Random random(hash_bits(x, y, s, options.seed ^ kPathSeed));
         first = walks.trace(ray, limits, random, tally, lit, unlit);
       } else {
-        first = tree.trace(ray, limits, sum.scratch, tally, lit, unlit);
+        first = tree.trace(ray, limits, sum.scratch, tally, lit, unlit, seen_relief);
       }
       pixel.radiance.add(sample);
       layer.distance_m[pixel_index(camera, x, y)] = first.distance;

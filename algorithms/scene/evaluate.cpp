@@ -109,7 +109,8 @@ void evaluate_instance(const SceneDescription& description, std::size_t i, doubl
                         from.material,
                         glm::mat4(to_world),
                         glm::vec3(from.tint),
-                        {from.cubes.begin(), from.cubes.end()}};
+                        {from.cubes.begin(), from.cubes.end()},
+                        from.relief};
 }
 
 // ---- lights and views ----
@@ -201,6 +202,8 @@ std::vector<Affected> all_parts(const SceneDescription& description) {
   add(Part::mesh, description.meshes.size());
   add(Part::forest, description.forest ? 1 : 0);
   add(Part::material, description.materials.size());
+  add(Part::relief_maps, description.reliefs.size());
+  add(Part::relief, description.reliefs.size());
   add(Part::instance, description.instances.size());
   add(Part::light, description.lights.size());
   add(Part::view, description.views.size());
@@ -234,6 +237,10 @@ void evaluate(SceneDescription& description, Affected what, double time_s, Scene
                                      static_cast<float>(from.anisotropy)};
       return;
     }
+    case Part::relief_maps:
+      return evaluate_relief_maps(description, what.index, time_s, scene);
+    case Part::relief:
+      return evaluate_relief(description, what.index, scene);
     case Part::instance:
       return evaluate_instance(description, what.index, time_s, scene);
     case Part::light:

@@ -1,12 +1,21 @@
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "algorithms/scene/loading_facts.hpp"
+#include "algorithms/scene/meshes/mesh_file.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/toml/scene_source.hpp"
 #include "gl/resources.hpp"
@@ -38,6 +47,26 @@ std::string find_scene(const std::string& name) {
   throw InputError(fmt::format("unknown scene '{}'; {} (a file's name must end in .toml)", name, hint));
 }
 
+/// The world's coordinates have 32 bits: far from the origin an object loses its shape.
+void warn_of_rounding(Scene& scene) {
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    if (mesh.positions.empty()) continue;
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const glm::vec3& p : mesh.positions) {
+      const glm::dvec3 at(glm::dmat4(instance.to_world) * glm::dvec4(glm::dvec3(p), 1));
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+    const double share = rounding_share(low, high);
+    if (share <= 1e-3) continue;
+    scene.source->facts().warnings.push_back(
+        fmt::format("{}: instances.{} lies so far from the origin that 32 bits move its points by up to {:.2g} of its "
+                    "extent",
+                    scene.name, instance.name, share));
+  }
+}
+
 }  // namespace
 
 std::vector<SceneInfo> list_scenes() {
@@ -59,6 +88,10 @@ std::vector<SceneInfo> list_scenes() {
   return scenes;
 }
 
+const LoadingFacts& loading_facts(const Scene& scene) {
+  return scene.source->facts();
+}
+
 Scene load_scene(const std::string& name_or_path) {
   auto description = std::make_unique<SceneDescription>();
   std::string text;
@@ -66,6 +99,7 @@ Scene load_scene(const std::string& name_or_path) {
   if (name_or_path.ends_with(".toml")) {
     description->file.shown = name_or_path;
     text = read_toml_text(name_or_path, "scene", kMaxSceneBytes);
+    description->facts.files.emplace_back(name_or_path);
     folder = fs::path(name_or_path).parent_path();
   } else {
     description->file.shown = find_scene(name_or_path);
@@ -78,6 +112,7 @@ Scene load_scene(const std::string& name_or_path) {
   scene.name = name;
   scene.source = std::make_shared<SceneSource>(std::move(description), std::move(text));
   scene.source->evaluate_all(scene);
+  warn_of_rounding(scene);
   return scene;
 }
 

@@ -15,6 +15,7 @@
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/images/image.hpp"
+#include "algorithms/scene/relief/relief.hpp"
 
 /// A scene is plain data, in metres and scene-linear Rec. 709 radiance, right-handed, y up. It knows no GL.
 namespace pellucid {
@@ -60,6 +61,7 @@ struct Instance {
   glm::vec3 tint{1.0F};  ///< multiplies the albedo
   /// Where techniques with several cube maps in an object put them by hand: points in the mesh's space [m].
   std::vector<glm::vec3> cubes{};
+  int relief = -1;  ///< index of the height fields that lie under the mesh; −1: none
 };
 
 enum class LightKind { directional, point, spot };
@@ -153,6 +155,7 @@ class Scene {
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<Instance> instances;
+  std::vector<Relief> reliefs;
   std::vector<Light> lights;
   std::optional<Volume> volume;
   Environment environment;
@@ -185,9 +188,10 @@ inline const Material& material_of(const Scene& scene, int instance) {
   return material_of(scene, scene.instances[static_cast<std::size_t>(instance)]);
 }
 
-/// True if `instance` has a mirror's, a metal's or a dielectric's material.
+/// True if `instance` is not a surface that the forward pass shades: it carries a relief, or has a mirror's, a metal's
+/// or a dielectric's material.
 inline bool optical(const Scene& scene, const Instance& instance) {
-  return material_of(scene, instance).optical();
+  return instance.relief >= 0 || material_of(scene, instance).optical();
 }
 
 /// Scenes that are embedded in the binary (`algorithms/*/scenes/*.toml`), read cheaply: for `pellucid list`.

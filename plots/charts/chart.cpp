@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <fmt/format.h>
@@ -43,6 +44,9 @@ struct Extent {
 void check_value(const Chart& chart, const Series& series, std::size_t i, const Axis& axis, double value) {
   const auto place = [&] { return fmt::format("chart '{}': series '{}', point {}", chart.title, series.label, i + 1); };
   if (!std::isfinite(value)) throw InputError(fmt::format("{}: {} is not a finite number", place(), axis.label));
+  if (!drawable(value, axis.scale))
+    throw InputError(fmt::format("{}: {} = {} is beyond what an axis can show, {:g} to {:g}", place(), axis.label,
+                                 value, kLeastShown, kMostShown));
   if (axis.scale != Scale::linear && value <= 0) {
     throw InputError(fmt::format("{}: {} = {} cannot stand on a logarithmic axis", place(), axis.label, value));
   }
@@ -59,9 +63,9 @@ void extents(const Chart& chart, Extent& x, Extent& y) {
       y.add(point.y);
       for (const std::optional<double>& end : {point.low, point.high}) {
         if (!end) continue;
-        if (!std::isfinite(*end)) {
-          throw InputError(fmt::format("chart '{}': series '{}', point {}: an end of the interval is not finite",
-                                       chart.title, series.label, i + 1));
+        if (!std::isfinite(*end) || !drawable(*end, Scale::linear)) {
+          throw InputError(fmt::format("chart '{}': series '{}', point {}: an end of the interval is {}", chart.title,
+                                       series.label, i + 1, *end));
         }
         if (chart.y.scale == Scale::linear || *end > 0) y.add(*end);
       }
@@ -149,6 +153,7 @@ void add_line(vtkChartXY* chart, const Series& series, const std::vector<Point>&
   plot->SetWidth(static_cast<float>(kLineWidth));
   plot->GetPen()->SetLineType(series.style.line == Line::dashed   ? vtkPen::DASH_LINE
                               : series.style.line == Line::dotted ? vtkPen::DOT_LINE
+                              : series.style.line == Line::none   ? vtkPen::NO_PEN
                                                                   : vtkPen::SOLID_LINE);
 }
 
@@ -229,6 +234,11 @@ std::string to_svg(const Chart& chart) {
       if (point.high) points.back().high = height(*point.high);
     }
     if (series.style.line != Line::none && points.size() > 1) add_line(plot, series, points);
+  }
+  // VTK draws no axes around nothing.
+  if (plot->GetNumberOfPlots() == 0) {
+    const Point corner{0, 0, {}, {}};
+    add_line(plot, {"", {}, {chart.series.front().style.color, Marker::none, Line::none}}, {corner, corner});
   }
 
   SvgScene scene{chart.width_px, page_height, chart.title, description(chart), plot, {}};

@@ -47,6 +47,7 @@ struct Series {
   std::vector<Point> points;  ///< joined in this order
   Style style{};
   double shift_px = 0;  ///< to the right: keeps the intervals of several series at one x apart
+  std::string name{};   ///< what it shows, also where the legend leaves it out
 };
 
 struct Chart {

@@ -8,8 +8,8 @@
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/chart.hpp"
-#include "plots/charts/process.hpp"
 #include "plots/charts/scratch_file.hpp"
+#include "sweeps/workers/process.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -31,8 +31,8 @@ std::string convert(const std::string& svg, bool png) {
   std::vector<std::string> argv{"rsvg-convert", "--background-color", "white", "--format", png ? "png" : "pdf"};
   if (png) argv.insert(argv.end(), {"--zoom", std::to_string(kPngZoom)});
   argv.push_back(source.path().string());
-  ProcessResult result = run_process(argv);
-  if (!result.found) {
+  sweeps::ProcessResult result = sweeps::run_process(argv);
+  if (result.status == 127) {
     throw RuntimeError(
         fmt::format("{} files need the program rsvg-convert (Debian package librsvg2-bin), which is not in PATH; "
                     "install it, or write .svg",

@@ -1,7 +1,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <vtkColorTransferFunction.h>
@@ -28,7 +34,8 @@ struct ValueScale {
   Scale scale = Scale::linear;
   double operator()(double value) const {
     if (!(high > low)) return 0.5;
-    return scale == Scale::linear ? (value - low) / (high - low) : std::log(value / low) / std::log(high / low);
+    return scale == Scale::linear ? (value - low) / (high - low)
+                                  : (std::log(value) - std::log(low)) / (std::log(high) - std::log(low));
   }
 };
 
@@ -58,7 +65,7 @@ Color ink_on(const Color& ground) {
 /// Three significant digits, whole numbers from 100 on.
 std::string cell_label(double value) {
   const double size = std::abs(value);
-  if (size == 0) return "0";
+  if (size < kLeastShown) return "0";
   if (size >= 1e5 || size < 1e-3) return power_label(size).insert(0, value < 0 ? "-" : "");
   const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(size))), 0, 5);
   return fmt::format("{:.{}f}", value, decimals);
@@ -83,6 +90,10 @@ ValueScale check(const HeatMap& map) {
         throw InputError(fmt::format("heat map '{}': the value at ({}, {}) is not a finite number", map.title,
                                      map.columns[c], map.rows[r]));
       }
+      if (!drawable(*value, map.value_scale))
+        throw InputError(
+            fmt::format("heat map '{}': the value {} at ({}, {}) is beyond what can be shown, {:g} to {:g}", map.title,
+                        *value, map.columns[c], map.rows[r], kLeastShown, kMostShown));
       if (map.value_scale != Scale::linear && *value <= 0) {
         throw InputError(fmt::format("heat map '{}': the value {} at ({}, {}) cannot stand on a logarithmic scale",
                                      map.title, *value, map.columns[c], map.rows[r]));

@@ -20,13 +20,6 @@ Style style(std::size_t i) {
   return result;
 }
 
-Style technique_style(std::string_view technique, std::size_t i) {
-  if (technique == "sampling_hulls") return {kPalette[0], Marker::circle, Line::solid};
-  if (technique == "volume_slices") return {kPalette[1], Marker::square, Line::solid};
-  if (technique == "ray_marching") return {kPalette[2], Marker::diamond, Line::solid};
-  return style(i + 3);
-}
-
 Style variant(const Style& base, std::size_t n) {
   const auto own = std::find(std::begin(kMarkers), std::end(kMarkers), base.marker);
   const std::size_t first = own == std::end(kMarkers) ? 0 : static_cast<std::size_t>(own - std::begin(kMarkers));

@@ -19,11 +19,9 @@ inline constexpr Color kGrid{224, 224, 224};
 /// The i-th of a row of styles; colour and marker change together, so that a grey print can be read too.
 Style style(std::size_t i);
 
-/// A technique looks the same in every figure; one that has no place of its own gets style(i).
-Style technique_style(std::string_view technique, std::size_t i);
 /// The same colour with another marker and line, for the n-th group of one technique (n >= 1).
 Style variant(const Style&, std::size_t n);
-/// "sampling hulls" for "sampling_hulls".
+/// "volume slices" for "volume_slices".
 std::string technique_title(std::string_view technique);
 
 }  // namespace pellucid::plots

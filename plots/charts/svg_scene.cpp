@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
 #include <vtkBrush.h>
@@ -28,6 +30,7 @@
 
 #include "gl/error.hpp"
 #include "plots/charts/scratch_file.hpp"
+#include "sweeps/workers/process.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -59,8 +62,54 @@ class PaintItem : public vtkContextItem {
 };
 vtkStandardNewMacro(PaintItem);
 
-void apply(const TextStyle& style, vtkTextProperty* property) {
+/// The characters of a UTF-8 text.
+std::vector<std::string> characters(const std::string& text) {
+  std::vector<std::string> all;
+  for (const char c : text) {
+    const bool continues = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+    if (all.empty() || !continues) all.emplace_back();
+    all.back() += c;
+  }
+  return all;
+}
+
+int drawn_width(vtkTextProperty* property, const std::string& text) {
+  int box[4] = {0, 0, 0, 0};
+  if (!vtkTextRenderer::GetInstance()->GetBoundingBox(property, text, box, 72)) return 0;
+  return box[1] - box[0] + 1;
+}
+
+/// VTK's built-in font lacks most of Unicode, and what it lacks is not drawn and takes no room.
+bool built_in_font_has(const std::string& text) {
+  static std::map<std::string, bool> known;
+  vtkNew<vtkTextProperty> property;
   property->SetFontFamilyToArial();
+  property->SetFontSize(24);
+  for (const std::string& character : characters(text)) {
+    if (character.size() == 1) continue;
+    const auto [at, is_new] = known.emplace(character, false);
+    if (is_new) at->second = drawn_width(property, "n" + character + "n") > drawn_width(property, "nn");
+    if (!at->second) return false;
+  }
+  return true;
+}
+
+/// The file of a font that has nearly everything; what it lacks it draws as a box.
+const std::string& full_font(bool bold) {
+  static const auto find = [](const char* pattern) {
+    const sweeps::ProcessResult result = sweeps::run_process({"fc-match", "--format=%{file}", pattern});
+    return result.found && result.status == 0 ? result.output : std::string();
+  };
+  static const std::string plain = find("DejaVu Sans:style=Book"), heavy = find("DejaVu Sans:style=Bold");
+  return bold ? heavy : plain;
+}
+
+void apply(const TextStyle& style, const std::string& text, vtkTextProperty* property) {
+  property->SetFontFamilyToArial();
+  if (!built_in_font_has(text) && !full_font(style.bold).empty()) {
+    property->SetFontFamily(VTK_FONT_FILE);
+    property->SetFontFile(full_font(style.bold).c_str());
+  }
   property->SetFontSize(static_cast<int>(std::lround(style.size_px)));
   property->SetBold(style.bold ? 1 : 0);
   property->SetColor(style.color.r / 255.0, style.color.g / 255.0, style.color.b / 255.0);
@@ -126,11 +175,9 @@ void repair_element(vtkXMLDataElement* element, int height_px) {
 
 double text_width(const std::string& text, const TextStyle& style) {
   vtkNew<vtkTextProperty> property;
-  apply(style, property);
+  apply(style, text, property);
   property->SetOrientation(0);
-  int box[4] = {0, 0, 0, 0};
-  if (!vtkTextRenderer::GetInstance()->GetBoundingBox(property, text, box, 72)) return 0;
-  return box[1] - box[0] + 1;
+  return drawn_width(property, text);
 }
 
 std::vector<std::string> wrap_text(const std::string& text, const TextStyle& style, double width) {
@@ -146,7 +193,7 @@ std::vector<std::string> wrap_text(const std::string& text, const TextStyle& sty
 }
 
 void Painter::text(double x, double y, const std::string& string, const TextStyle& style) {
-  apply(style, context_->GetTextProp());
+  apply(style, string, context_->GetTextProp());
   context_->DrawString(static_cast<float>(x), static_cast<float>(y), string);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -52,8 +53,10 @@ AxisLayout linear_axis(const Axis& axis, double low, double high, int wanted) {
     low = std::min(low, 0.0);
     high = std::max(high, 0.0);
   }
-  if (high == low) {
-    const double around = low == 0 ? 1 : std::abs(low) * 0.5;
+  // What differs by rounding alone is one value; so is what no label could tell apart.
+  const double size = std::max(std::abs(low), std::abs(high));
+  if (high - low <= std::max(1e-9 * size, kLeastShown)) {
+    const double around = size <= kLeastShown ? 1 : size * 0.5;
     high += around;
     if (!axis.from_zero || low != 0) low -= around;
   }
@@ -82,8 +85,9 @@ void pad(AxisLayout& layout, double low, double high, double least) {
     b += missing;
   }
   const double padding = (b - a) * kLogPadding;
-  layout.min = backward(layout.scale, a - padding);
-  layout.max = backward(layout.scale, b + padding);
+  const double most = forward(layout.scale, std::numeric_limits<double>::max() / 10);
+  layout.min = backward(layout.scale, std::max(a - padding, -most));
+  layout.max = backward(layout.scale, std::min(b + padding, most));
 }
 
 AxisLayout binary_axis(double low, double high, int wanted) {
@@ -142,6 +146,11 @@ double AxisLayout::position(double value) const {
   return (forward(scale, value) - a) / (b - a);
 }
 
+bool drawable(double value, Scale scale) {
+  const double size = std::abs(value);
+  return size <= kMostShown && (scale == Scale::linear || size == 0 || size >= kLeastShown);
+}
+
 AxisLayout lay_out_axis(const Axis& axis, double low, double high, int wanted) {
   assert(std::isfinite(low) && std::isfinite(high) && low <= high);
   assert(axis.scale == Scale::linear || low > 0);
@@ -159,11 +168,12 @@ AxisLayout lay_out_axis(const Axis& axis, double low, double high, int wanted) {
 std::string decimal_label(double value, int decimals) {
   if (value == 0) return "0";
   const double size = std::abs(value);
-  if (size >= 1e6 || decimals > 5) {
-    const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-9));
-    return fmt::format("{:.3g}e{}", value / std::pow(10.0, exponent), exponent);
-  }
-  return fmt::format("{:.{}f}", value, decimals);
+  if (size < 1e6 && decimals <= 5) return fmt::format("{:.{}f}", value, decimals);
+  // As many digits as tell it from the next tick.
+  const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-9));
+  const int digits = exponent + decimals + 1;
+  if (digits > 3 && size < 1e12 && decimals <= 12) return fmt::format("{:.{}f}", value, decimals);
+  return fmt::format("{:.{}g}e{}", value / std::pow(10.0, exponent), std::clamp(digits, 3, 16), exponent);
 }
 
 std::string power_label(double value) {

@@ -26,6 +26,10 @@ struct AxisLayout {
 /// about how many labels there is room for.
 AxisLayout lay_out_axis(const Axis&, double low, double high, int wanted);
 
+/// Between these a value can be laid out without leaving what a double holds.
+inline constexpr double kLeastShown = 1e-300, kMostShown = 1e300;
+bool drawable(double value, Scale);
+
 /// "0.001", "2e-5", "1/4": short, and exact for the values that ticks take.
 std::string decimal_label(double value, int decimals);
 std::string power_label(double value);   ///< for logarithmic axes to base 10

@@ -1,100 +1,144 @@
 #include "plots/figures/plane_map.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <iterator>
+#include <map>
+#include <optional>
 #include <set>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "plots/charts/chart.hpp"
 
 namespace pellucid::plots {
 namespace {
 
 using nlohmann::json;
 
-constexpr double kPaperHulls = 4, kPaperSamples = 8;  // Sec. 5: the fastest of Table 1
-const std::vector<std::string> kPlane{"hulls", "samples"};
-
-void check_one_setting(const FigureInfo& info, const Rows& rows) {
-  const std::vector<Group> groups = group_rows(rows, kPlane);
-  check_distinct(groups, kPlane);
+void check_one_setting(const Rows& rows, const std::array<std::string, 2>& plane) {
+  const std::vector<Group> groups = group_rows(rows, plane);
+  check_distinct(groups, plane);
   if (groups.size() < 2) return;
   throw InputError(
-      fmt::format("'{}' shows one setting beside M and N, the rows have {}: '{}', '{}'{}; choose with --where",
-                  info.name, groups.size(), groups[0].label, groups[1].label, groups.size() > 2 ? ", …" : ""));
+      fmt::format("a map shows one setting beside {} and {}, the rows have {}: '{}', '{}'{}; choose with --where",
+                  plane[0], plane[1], groups.size(), groups[0].label, groups[1].label, groups.size() > 2 ? ", …" : ""));
 }
 
-const json* find(const Rows& rows, double hulls, double samples) {
-  for (const json* row : rows.kept) {
-    if (*number(*row, "hulls") == hulls && *number(*row, "samples") == samples) return row;
-  }
-  return nullptr;
+/// The first is larger where more is better, smaller elsewhere.
+bool better(const Fields& fields, const std::string& field, double a, double b) {
+  const Quantity* quantity = fields.find(field);
+  return quantity != nullptr && quantity->better == sweeps::Better::more ? a > b : a < b;
 }
 
-/// The fastest row that errs no more than `paper`; null where a row lacks its time or its error.
-const json* our_choice(const Rows& rows, const json& paper) {
-  const auto bound = number(paper, "flip_mean");
-  const json* best = nullptr;
-  for (const json* row : rows.kept) {
-    const auto error = number(*row, "flip_mean"), rate = number(*row, "fps");
-    if (!bound || !error || !rate) return nullptr;
-    if (*error <= *bound && (best == nullptr || *rate > *number(*best, "fps"))) best = row;
+/// The row of a mark, and the bound that it had to keep.
+struct Marked {
+  const json* row = nullptr;
+  std::optional<double> bound{};
+};
+
+/// Null where a row lacks what decides.
+Marked best_row(const Rows& rows, const PlaneMark& mark, const json* than, const Fields& fields) {
+  Marked found;
+  if (!mark.than.empty()) {
+    if (than == nullptr) return {};
+    found.bound = fields.value(*than, mark.no_worse_in);
+    if (!found.bound) return {};
   }
-  return best;
+  std::optional<double> best;
+  for (const json* row : rows.kept) {
+    const auto decides = fields.value(*row, mark.best);
+    const auto held = mark.than.empty() ? std::optional(0.0) : fields.value(*row, mark.no_worse_in);
+    if (!decides || !held) return {};
+    const bool keeps = !found.bound || *held == *found.bound || better(fields, mark.no_worse_in, *held, *found.bound);
+    if (!keeps || (best && !better(fields, mark.best, *decides, *best))) continue;
+    best = decides;
+    found.row = row;
+  }
+  return found;
+}
+
+const json* row_at(const Rows& rows, const PlaneMark& mark, const Fields& fields) {
+  const auto stands = [&](const json* row) {
+    return std::all_of(mark.at.begin(), mark.at.end(),
+                       [&](const auto& place) { return fields.value(*row, place.first) == place.second; });
+  };
+  const auto found = std::find_if(rows.kept.begin(), rows.kept.end(), stands);
+  return found == rows.kept.end() ? nullptr : *found;
+}
+
+/// The note with what stands in braces filled in.
+std::string fill(const std::string& note, const Marked& marked) {
+  std::string out;
+  for (std::size_t i = 0; i < note.size(); ++i) {
+    const std::size_t end = note[i] == '{' ? note.find('}', i) : std::string::npos;
+    if (end == std::string::npos) {
+      out += note[i];
+      continue;
+    }
+    const std::string field = note.substr(i + 1, end - i - 1);
+    out += field == "bound" && marked.bound ? fmt::format("{:.3g}", *marked.bound)
+                                            : sweeps::field_text(*marked.row, field);
+    i = end;
+  }
+  return out;
 }
 
 }  // namespace
 
-std::string plane_map(const FigureInfo& info, const Rows& rows, const std::string& field) {
-  check_one_setting(info, rows);
-  std::set<double> hulls, samples;
+HeatMap map_of_rows(const std::vector<json>& all, const PlaneMap& wanted, const Fields& fields) {
+  const std::array<std::string, 2> plane{wanted.x.field, wanted.y.field};
+  std::vector<std::string> needed{plane[0], plane[1], wanted.value.field};
+  needed.insert(needed.end(), wanted.needs.begin(), wanted.needs.end());
+  const Rows rows = choose_rows(all, wanted.where, needed, fields);
+  check_one_setting(rows, plane);
+
+  std::set<double> columns, lines;
   for (const json* row : rows.kept) {
-    hulls.insert(*number(*row, "hulls"));
-    samples.insert(*number(*row, "samples"));
+    columns.insert(*fields.value(*row, plane[0]));
+    lines.insert(*fields.value(*row, plane[1]));
   }
   HeatMap map;
-  map.title = info.title;
-  map.x_label = "sampling hulls M";
-  map.y_label = "points per hull N";
-  map.value_label = field == "fps" ? "frames/s" : "mean FLIP";
-  for (const double m : hulls)
-    map.columns.push_back(fmt::format("{:g}", m));
-  for (const double n : samples)
-    map.rows.push_back(fmt::format("{:g}", n));
-  map.values.assign(samples.size(), std::vector<std::optional<double>>(hulls.size()));
+  map.title = wanted.title;
+  map.x_label = axis_of(wanted.x, fields).label;
+  map.y_label = axis_of(wanted.y, fields).label;
+  map.value_label = axis_of(wanted.value, fields).label;
+  for (const double value : columns)
+    map.columns.push_back(fmt::format("{:g}", value));
+  for (const double value : lines)
+    map.rows.push_back(fmt::format("{:g}", value));
+  map.values.assign(lines.size(), std::vector<std::optional<double>>(columns.size()));
   const auto place = [](const std::set<double>& values, double value) {
     return static_cast<std::size_t>(std::distance(values.begin(), values.find(value)));
   };
   const auto cell_of = [&](const json& row) {
-    return HeatMap::Cell{place(samples, *number(row, "samples")), place(hulls, *number(row, "hulls"))};
+    return HeatMap::Cell{place(lines, *fields.value(row, plane[1])), place(columns, *fields.value(row, plane[0]))};
   };
-  double least = HUGE_VAL, greatest = 0;
+  std::set<double> values;
   for (const json* row : rows.kept) {
-    const double value = *number(*row, field);
+    const double value = *fields.value(*row, wanted.value.field);
     const HeatMap::Cell cell = cell_of(*row);
     map.values[cell.row][cell.column] = value;
-    least = std::min(least, value);
-    greatest = std::max(greatest, value);
+    values.insert(value);
   }
-  // To base 10 when the values span more than a factor of ten.
-  map.value_scale = least > 0 && greatest > 10 * least ? Scale::log10 : Scale::linear;
-  map.note = provenance_note(rows, true);
-  if (const json* paper = find(rows, kPaperHulls, kPaperSamples)) {
-    map.marks.push_back({cell_of(*paper), "paper"});
-    map.note += " Solid: the paper's choice, M×N = 4×8.";
-    if (const json* ours = our_choice(rows, *paper)) {
-      map.marks.push_back({cell_of(*ours), "ours"});
-      map.note += fmt::format(
-          " Dashed: ours, {}×{}: the fastest setting whose mean FLIP is no larger than that of the paper's choice, "
-          "{:.3g}.",
-          value_text(ours->at("hulls")), value_text(ours->at("samples")), *number(*paper, "flip_mean"));
+  map.value_scale = scale_for(*values.begin(), *values.rbegin());
+
+  const auto timed = [&](const std::string& field) { return fields.is_time(field); };
+  map.note = provenance_note(rows, std::any_of(needed.begin(), needed.end(), timed));
+  std::map<std::string, Marked> marked;
+  for (const PlaneMark& mark : wanted.marks) {
+    Marked& found = marked[mark.label];
+    if (mark.best.empty()) {
+      found.row = row_at(rows, mark, fields);
+    } else {
+      found = best_row(rows, mark, mark.than.empty() ? nullptr : marked.at(mark.than).row, fields);
     }
+    if (found.row == nullptr) continue;
+    map.marks.push_back({cell_of(*found.row), mark.label});
+    if (!mark.note.empty()) map.note += " " + fill(mark.note, found);
   }
-  return to_svg(map);
+  return map;
 }
 
 }  // namespace pellucid::plots

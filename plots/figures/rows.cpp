@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -11,6 +14,7 @@
 #include "algorithms/parameters.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/style.hpp"
+#include "sweeps/spec/constraint.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -31,13 +35,22 @@ void check_field(const std::vector<json>& rows, const std::string& field) {
                                near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)));
 }
 
-/// The distinct values of a field, quoted; at most eight.
-std::string listed(const std::vector<const json*>& rows, const std::string& field) {
+/// The distinct values of a field, quoted; at most eight, those nearest to the number that was wanted first.
+std::string listed(const std::vector<const json*>& rows, const std::string& field, const std::string& wanted = {}) {
   std::vector<std::string> values;
   for (const json* row : rows) {
     const std::string value = field_text(*row, field);
     if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
   }
+  const auto distance = [&](const std::string& value) {
+    double a = 0, b = 0;
+    const auto read = [](const std::string& text, double& out) {
+      return std::from_chars(text.data(), text.data() + text.size(), out).ec == std::errc{};
+    };
+    return read(value, a) && read(wanted, b) ? std::abs(a - b) : 0;
+  };
+  std::stable_sort(values.begin(), values.end(),
+                   [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
   constexpr std::size_t kMost = 8;
   const bool more = values.size() > kMost;
   if (more) values.resize(kMost);
@@ -59,27 +72,60 @@ bool is_common(std::string_view setting) {
   return setting == "scene" || setting == "view" || setting == "size" || setting.find('.') != std::string_view::npos;
 }
 
-bool is_timing(const std::string& field) {
-  return field == "fps" || field.starts_with("frame_ms");
+bool meets(const json& row, const Where& where) {
+  return std::any_of(where.values.begin(), where.values.end(), [&](const std::string& value) {
+    return sweeps::meets(row, {where.field, value});
+  });
 }
 
 }  // namespace
 
-Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> conditions,
-                 std::span<const std::string> fields) {
+const Quantity* Fields::find(std::string_view field) const {
+  return paper_ == nullptr ? sweeps::find_quantity(field) : paper_->find_quantity(field);
+}
+
+std::optional<double> Fields::value(const json& row, const std::string& field) const {
+  const Quantity* quantity = find(field);
+  return quantity == nullptr ? number(row, field) : sweeps::value_of(*quantity, row);
+}
+
+std::vector<std::string> Fields::sources_of(const std::string& field) const {
+  if (field.empty()) return {};
+  const Quantity* quantity = find(field);
+  if (quantity == nullptr || quantity->expressions.empty()) return {field};
+  std::vector<std::string> sources;
+  for (const auto& [technique, expression] : quantity->expressions) {
+    for (const std::string& source : expression->used()) {
+      if (std::find(sources.begin(), sources.end(), source) == sources.end()) sources.push_back(source);
+    }
+  }
+  return sources;
+}
+
+bool Fields::is_time(const std::string& field) const {
+  const Quantity* quantity = find(field);
+  if (quantity == nullptr) return false;
+  const std::vector<std::string> sources = sources_of(field);
+  return quantity->time || std::any_of(sources.begin(), sources.end(),
+                                       [&](const std::string& source) { return source != field && is_time(source); });
+}
+
+Rows choose_rows(const std::vector<json>& rows, std::span<const Where> where, std::span<const std::string> needed,
+                 const Fields& fields) {
   if (rows.empty())
     throw InputError("there are no rows to draw: the store is empty, or no point has been measured yet");
   std::vector<const json*> left;
   for (const json& row : rows)
     left.push_back(&row);
-  for (const Condition& condition : conditions) {
+  for (const Where& condition : where) {
     check_field(rows, condition.field);
     std::vector<const json*> next;
     std::copy_if(left.begin(), left.end(), std::back_inserter(next),
                  [&](const json* row) { return meets(*row, condition); });
     if (next.empty()) {
-      throw InputError(fmt::format("no row has {} = {}; there are {}", condition.field, condition.value,
-                                   listed(left, condition.field)));
+      throw InputError(fmt::format("no row has {} = {}; there are {}", condition.field,
+                                   fmt::join(condition.values, " or "),
+                                   listed(left, condition.field, condition.values.front())));
     }
     left = std::move(next);
   }
@@ -90,30 +136,38 @@ Rows choose_rows(const std::vector<json>& rows, std::span<const Condition> condi
     for (const auto& [name, value] : settings(*row))
       parameters.insert(name);
   }
+  const auto of_another_technique = [&](const json& row, const std::string& field) {
+    const std::vector<std::string> sources = fields.sources_of(field);
+    return std::any_of(sources.begin(), sources.end(),
+                       [&](const std::string& source) { return parameters.contains(source) && !row.contains(source); });
+  };
+  const auto timed = [&](const std::string& field) { return fields.is_time(field); };
   Rows result;
   std::set<std::string> seen;
   for (const json* row : left) {
     std::vector<std::string> missing;
-    std::copy_if(fields.begin(), fields.end(), std::back_inserter(missing),
-                 [&](const std::string& field) { return !number(*row, field); });
-    if (std::any_of(missing.begin(), missing.end(), [&](const auto& field) { return parameters.contains(field); })) {
+    std::copy_if(needed.begin(), needed.end(), std::back_inserter(missing),
+                 [&](const std::string& field) { return !fields.value(*row, field); });
+    if (std::any_of(missing.begin(), missing.end(),
+                    [&](const auto& field) { return of_another_technique(*row, field); }))
       continue;
-    }
     if (row->contains("point") && !seen.insert(field_text(*row, "point")).second) continue;
     if (field_text(*row, "status") == "failed")
       ++result.failed;
     else if (missing.empty())
       result.kept.push_back(row);
-    else if (field_text(*row, "timing") == "off" && std::all_of(missing.begin(), missing.end(), is_timing))
+    else if (field_text(*row, "timing") == "off" && std::all_of(missing.begin(), missing.end(), timed))
       ++result.untimed;
     else
       ++result.incomplete;
   }
   if (result.kept.empty()) {
-    for (const std::string& field : fields)
-      check_field(rows, field);
+    for (const std::string& field : needed) {
+      for (const std::string& source : fields.sources_of(field))
+        check_field(rows, source);
+    }
     throw InputError(fmt::format("nothing to draw: no row has a number for {}; {} failed, {} were not timed",
-                                 fmt::join(fields, " and "), result.failed, result.untimed));
+                                 fmt::join(needed, " and "), result.failed, result.untimed));
   }
   check_one_machine(result.kept);
   result.unconverged =

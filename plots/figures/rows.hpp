@@ -10,16 +10,34 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/store/rows.hpp"
 
 /// From the rows of a store to what a figure draws: chosen, checked, grouped.
 namespace pellucid::plots {
 
-using sweeps::Condition;
 using sweeps::field_text;
 using sweeps::number;
+using sweeps::Quantity;
 using sweeps::settings;
 using sweeps::value_text;
+
+/// What a chart can draw of a row: its fields, and the quantities that are worked out from them.
+class Fields {
+ public:
+  /// With the quantities of this paper besides those of all; it must outlive this.
+  explicit Fields(const sweeps::Paper* paper = nullptr) : paper_(paper) {}
+  /// Null for a parameter.
+  const Quantity* find(std::string_view field) const;
+  std::optional<double> value(const nlohmann::json& row, const std::string& field) const;
+  /// What a row must hold for `field`: itself, or all that its expressions use. Empty for no field.
+  std::vector<std::string> sources_of(const std::string& field) const;
+  /// Whether it is measured by timing frames.
+  bool is_time(const std::string& field) const;
+
+ private:
+  const sweeps::Paper* paper_;
+};
 
 /// Rows that can be drawn, and how many could not.
 struct Rows {
@@ -30,12 +48,18 @@ struct Rows {
   std::size_t unconverged = 0;              ///< kept, but the frame time's interval is wider than asked for
 };
 
-/// The rows that meet every condition and have a number in each of `fields`. A point that stands in several blocks or
-/// specs counts once; one that lacks a parameter among `fields` is of another technique and is not counted. Throws
+/// A field and the values that it may have, compared as text, numbers by value.
+struct Where {
+  std::string field;
+  std::vector<std::string> values;
+};
+
+/// The rows that meet every condition and have a number in each of `needed`. A point that stands in several blocks or
+/// specs counts once; one that lacks a parameter among `needed` is of another technique and is not counted. Throws
 /// InputError for a field that no row has (nearest name), for a condition that no row meets (with the values there
 /// are), and for rows of more than one device or driver.
-Rows choose_rows(const std::vector<nlohmann::json>& rows, std::span<const Condition> conditions,
-                 std::span<const std::string> fields);
+Rows choose_rows(const std::vector<nlohmann::json>& rows, std::span<const Where> where,
+                 std::span<const std::string> needed, const Fields& = Fields());
 
 /// Rows that differ in nothing but the settings that a chart shows otherwise.
 struct Group {

@@ -12,12 +12,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/bare_frame.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -44,10 +45,11 @@ struct AgainstVtk {
   std::string skipped;
 };
 
-AgainstVtk against_vtk(const Options& options, const sweeps::BenchRequest& request, gl::Context& context) {
+AgainstVtk against_vtk(const TechniqueInfo& technique, const Options& options, const sweeps::BenchRequest& request,
+                       gl::Context& context) {
   if (!options.vtk) return {std::nullopt, "not asked for"};
   try {
-    return {sweeps::bench_against_vtk(request, context), {}};
+    return {sweeps::bench_against_vtk(technique, request, context), {}};
   } catch (const RuntimeError& error) {
     context.make_current();
     return {std::nullopt, error.what()};
@@ -113,56 +115,25 @@ void print_reference(const BenchReference& reference) {
   print_time("the reference's tracing", reference.trace);
   print_ratio("reference / frame", reference.ratio);
   fmt::print(
-      "  {:<34} {:9.3f}     one tree a pixel, up to {} interface{} along a path; without building the hierarchy "
+      "  {:<34} {:9.3f}     one tree per pixel, up to {} interface{} along a path; without building the hierarchy "
       "({:.3g} ms)\n",
       "rays per pixel", reference.rays_per_pixel, reference.depth, reference.depth == 1 ? "" : "s", reference.build_ms);
-}
-
-/// A technique that has a bare shader.
-struct Subject {
-  std::string_view technique;
-  const char* scene;  ///< without --scene
-  BenchResult (*bench)(const sweeps::BenchRequest&, nlohmann::json&);
-  std::string (*counts)(const nlohmann::json& parameters);  ///< what decides on the fetches, in words
-};
-const Subject kSubjects[] = {
-    {"sampling_hulls", "fog_forest", sweeps::bench_sampling_hulls,
-     [](const nlohmann::json& p) {
-       return fmt::format("{} hulls of {} samples", p.at("hulls").get<int>(), p.at("samples").get<int>());
-     }},
-    {"distance_impostors", "mirror_room", sweeps::bench_distance_impostors,
-     [](const nlohmann::json& p) { return fmt::format("NITER {}", p.at("iterations").get<int>()); }},
-    {"geocube", "glass_bunny", sweeps::bench_geocube,
-     [](const nlohmann::json& p) {
-       return fmt::format("at most {} steps, reflections {}", p.at("iterations").get<int>(),
-                          p.at("reflections").get<int>());
-     }},
-};
-
-std::string subject_names() {
-  std::vector<std::string_view> names;
-  for (const Subject& subject : kSubjects)
-    names.push_back(subject.technique);
-  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 int bench(const Options& options) {
   const Size size = parse_size(options.size);
   const TechniqueInfo& info = find_technique(options.technique);
-  const auto subject = std::find_if(std::begin(kSubjects), std::end(kSubjects),
-                                    [&](const Subject& s) { return s.technique == info.name; });
-  if (subject == std::end(kSubjects)) {
-    throw InputError(fmt::format("bench: there is no bare shader of {}, only of {}", info.name, subject_names()));
-  }
-  const bool hulls = info.name == "sampling_hulls";
-  const std::string scene = !options.scene.empty() ? options.scene : subject->scene;
-  sweeps::BenchRequest request{scene, options.view, size.width, size.height, {}, options.frames, options.reference};
+  const BareFrameInfo& bare = sweeps::bare_frame_of(info);
+  sweeps::BenchRequest request{options.scene,  options.view,     size.width, size.height, {},
+                               options.frames, options.reference};
   for (const std::string& setting : options.settings)
     request.settings.push_back(parse_assignment(setting));
   gl::Context context({.device = options.device});
   nlohmann::json recipe;
-  const BenchResult result = subject->bench(request, recipe);
-  const AgainstVtk vtk = hulls ? against_vtk(options, request, context) : AgainstVtk{std::nullopt, "it draws volumes"};
+  const BenchResult result = sweeps::bench(info, request, recipe);
+  const bool volume = bare.volume;
+  const AgainstVtk vtk = volume ? against_vtk(info, options, request, context)
+                                : AgainstVtk{std::nullopt, "it draws volumes, the technique does not"};
 
   if (options.json) {
     ordered_json out = recipe;
@@ -189,9 +160,10 @@ int bench(const Options& options) {
     return kDone;
   }
   const nlohmann::json& parameters = recipe.at("parameters");
-  const std::string counts = subject->counts(parameters);
-  fmt::print("{} of {}, view {}, {}, {}x{}; medians of {} frames [95 % interval]\n", options.technique, scene,
-             recipe.at("view").get<std::string>(), counts, size.width, size.height, result.frames);
+  const std::string counts = bare.counts(parameters);
+  fmt::print("{} of {}, view {}, {}, {}x{}; medians of {} frames [95 % interval]\n", options.technique,
+             recipe.at("scene").get<std::string>(), recipe.at("view").get<std::string>(), counts, size.width,
+             size.height, result.frames);
   print_time("frame", result.method);
   print_time("bare shader's frame", result.bare);
   print_time("passes that both share, alone", result.opaque);
@@ -201,20 +173,24 @@ int bench(const Options& options) {
   fmt::print("  {:<34} {:9.3f}     {:.4g} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
              result.fetches_per_blend);
   if (result.reference) print_reference(*result.reference);
-  if (hulls) print_vtk(vtk);
+  if (volume) print_vtk(vtk);
   fmt::print("on {}, clock {}\n", context.device().renderer, result.clock);
   return kDone;
 }
 
 }  // namespace
 
-void add_bench(CLI::App& root, std::vector<Command>& commands) {
+void add_bench(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand(
+  std::vector<std::string_view> names;
+  for (const BareFrameInfo* info : bare_frames())
+    names.push_back(info->technique);
+  cli::App* app = root.add_subcommand(
       "bench",
       "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK or "
       "ray tracing");
-  app->add_option("technique", options->technique, "The technique: " + subject_names())->required();
+  app->add_option("technique", options->technique, fmt::format("The technique: {}", fmt::join(names, ", ")))
+      ->required();
   app->add_option("--scene", options->scene,
                   "A scene's name (pellucid list scenes) or a .toml file; the technique's own without it");
   app->add_option("-s,--set", options->settings,
@@ -224,7 +200,7 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
   app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   app->add_option("--frames", options->frames,
                   fmt::format("Frames timed of each, rounded up to whole blocks of {}", BenchResult::kBlockFrames))
-      ->check(CLI::Range(2 * BenchResult::kBlockFrames, 100000))
+      ->check(cli::Range(2 * BenchResult::kBlockFrames, 100000))
       ->capture_default_str();
   app->add_flag("!--no-vtk", options->vtk, "Leave out the comparison with VTK's GPU ray casting");
   app->add_flag("!--no-reference", options->reference, "Leave out the comparison with ray tracing");
@@ -243,7 +219,7 @@ void add_bench(CLI::App& root, std::vector<Command>& commands) {
       "which its error against the reference is no larger than the technique's. VTK needs no display for it.\n"
       "Against ray tracing (distance_impostors) the reference traces the same picture between the blocks, one tree of "
       "rays\n"
-      "a pixel on all cores of the processor, following light as far as the frame does.");
+      "per pixel on all cores of the processor, following light as far as the frame does.");
   commands.push_back({app, [options] { return bench(*options); }});
 }
 

@@ -3,30 +3,29 @@
 #include <functional>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "sandbox/commands/command_line.hpp"
+#include "sandbox/status.hpp"
 
 namespace pellucid::sandbox {
-
-/// Exit statuses of the program.
-enum Status { kDone = 0, kFailed = 1, kBadInput = 2, kRegression = 3 };
 
 /// A sub-command: declared on the root, run after parsing. Errors leave `run` as exceptions (gl/error.hpp); main prints
 /// them. Data goes to standard output, everything else to standard error.
 struct Command {
-  CLI::App* app = nullptr;
+  cli::App* app = nullptr;
   std::function<int()> run;
 };
 
 // Each adds its sub-commands (one or more) to `root`.
-void add_list(CLI::App& root, std::vector<Command>&);       ///< list, describe, devices
-void add_render(CLI::App& root, std::vector<Command>&);     ///< render
-void add_reference(CLI::App& root, std::vector<Command>&);  ///< reference
-void add_compare(CLI::App& root, std::vector<Command>&);    ///< compare
-void add_sweep(CLI::App& root, std::vector<Command>&);      ///< sweep run, sweep status, the hidden worker
-void add_results(CLI::App& root, std::vector<Command>&);    ///< results, table
-void add_bench(CLI::App& root, std::vector<Command>&);      ///< bench
-void add_slab(CLI::App& root, std::vector<Command>&);       ///< slab
-void add_plot(CLI::App& root, std::vector<Command>&);       ///< plot
-void add_reproduce(CLI::App& root, std::vector<Command>&);  ///< reproduce
+void add_list(cli::App& root, std::vector<Command>&);       ///< list, describe, devices
+void add_render(cli::App& root, std::vector<Command>&);     ///< render
+void add_reference(cli::App& root, std::vector<Command>&);  ///< reference
+void add_compare(cli::App& root, std::vector<Command>&);    ///< compare
+void add_sweep(cli::App& root, std::vector<Command>&);      ///< sweep run, sweep status, the hidden worker
+void add_results(cli::App& root, std::vector<Command>&);    ///< results, table
+void add_bench(cli::App& root, std::vector<Command>&);      ///< bench
+void add_slab(cli::App& root, std::vector<Command>&);       ///< slab
+void add_plot(cli::App& root, std::vector<Command>&);       ///< plot
+void add_reproduce(cli::App& root, std::vector<Command>&);  ///< reproduce
+void add_view(cli::App& root, std::vector<Command>&);       ///< view, and its hidden renderer
 
 }  // namespace pellucid::sandbox

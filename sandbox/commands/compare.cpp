@@ -1,17 +1,23 @@
 // pellucid compare.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/images/picture_file.hpp"
 #include "gl/error.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/metrics/metrics.hpp"
 
@@ -65,7 +71,7 @@ struct Mask {
   std::string source;
 };
 
-Mask find_mask(const Options& options, const ImageFile& reference) {
+Mask find_mask(const Options& options, const PictureFile& reference) {
   const auto layer_of = [](const ImageFile& file, const std::string& name) -> const Image* {
     const auto found = file.layers.find(name);
     return found == file.layers.end() ? nullptr : &found->second;
@@ -79,16 +85,53 @@ Mask find_mask(const Options& options, const ImageFile& reference) {
     return {*layer, fmt::format("layer {} of {}", options.mask, options.reference.string())};
   std::error_code ignored;
   if (!std::filesystem::exists(options.mask, ignored)) {
-    std::vector<std::string> layers;
-    for (const auto& [name, image] : reference.layers)
-      layers.push_back(name);
+    const std::vector<std::string>& layers = reference.layer_names;
     throw InputError(fmt::format("--mask {}: neither a file nor a layer of {}, which has {}", options.mask,
                                  options.reference.string(),
                                  layers.empty() ? "none" : fmt::format("{}", fmt::join(layers, ", "))));
   }
-  ImageFile file = read_image(options.mask);
+  PictureFile file = read_picture(options.mask, [](const std::string& layer) { return layer == "mask"; });
   if (const Image* layer = layer_of(file, "mask")) return {*layer, "layer mask of " + options.mask};
   return {std::move(file.image), options.mask};
+}
+
+/// A mask that nobody asked for and that marks nothing (an opaque scene's reference, another program's layer) is left
+/// alone.
+void drop_empty_mask(const Options& options, Mask& mask, std::vector<std::string>& notes) {
+  if (!options.mask.empty() || !mask.image) return;
+  const Image& image = *mask.image;
+  bool marked = image.width < 1;
+  for (std::size_t i = 0; !marked && i < image.pixels.size(); i += static_cast<std::size_t>(image.channels))
+    marked = image.pixels[i] > 0.5F;
+  if (marked) return;
+  notes.push_back(
+      fmt::format("{} marks no pixel and is not used (--no-mask leaves it out without this note)", mask.source));
+  mask = {};
+}
+
+/// Both pictures are of one kind, size and shape of pixels.
+void check_comparable(const Options& options, const PictureFile& reference, const PictureFile& test) {
+  const auto kind = [](const PictureFile& file) { return file.display_encoded ? "display-encoded" : "scene-linear"; };
+  if (reference.display_encoded != test.display_encoded)
+    throw InputError(fmt::format("{} is {} and {} is {}: compare EXR with EXR, PNG with PNG",
+                                 options.reference.string(), kind(reference), options.test.string(), kind(test)));
+  if (reference.image.width != test.image.width || reference.image.height != test.image.height)
+    throw InputError(fmt::format("test {} is {}, but the reference {} is {}", options.test.string(), size_text(test),
+                                 options.reference.string(), size_text(reference)));
+  if (std::abs(reference.pixel_aspect - test.pixel_aspect) > 1e-4 * reference.pixel_aspect)
+    throw InputError(fmt::format("the pixels of {} are {:.4g} times as wide as high, those of {} {:.4g} times",
+                                 options.test.string(), test.pixel_aspect, options.reference.string(),
+                                 reference.pixel_aspect));
+}
+
+/// A map must not replace what is compared.
+void check_map(const Options& options) {
+  if (options.map.empty()) return;
+  if (options.map.extension() != ".png" && options.map.extension() != ".exr")
+    throw InputError(fmt::format("--map {}: the name must end in .png or .exr", options.map.string()));
+  check_output(options.map, {".png", ".exr"});
+  for (const std::filesystem::path& input : {options.reference, options.test, std::filesystem::path(options.mask)})
+    check_no_input(options.map, input, "--map");
 }
 
 std::string text_of(double value) {
@@ -132,20 +175,23 @@ ordered_json to_json(const sweeps::Comparison& comparison, const sweeps::Compari
 }
 
 int compare(const Options& options) {
-  if (!options.map.empty()) {
-    if (options.map.extension() != ".png" && options.map.extension() != ".exr")
-      throw InputError(fmt::format("--map {}: the name must end in .png or .exr", options.map.string()));
-    check_output(options.map, {".png", ".exr"});
-  }
+  check_map(options);
   const sweeps::MetricSet metrics = options.metrics.empty() ? sweeps::MetricSet() : sweeps::MetricSet(options.metrics);
-  ImageFile reference = read_image(options.reference);
-  const ImageFile test = read_image(options.test);
-  const auto kind = [](const ImageFile& file) { return file.display_encoded ? "display-encoded" : "scene-linear"; };
-  if (reference.display_encoded != test.display_encoded)
-    throw InputError(fmt::format("{} is {} and {} is {}: compare EXR with EXR, PNG with PNG",
-                                 options.reference.string(), kind(reference), options.test.string(), kind(test)));
-
-  const Mask mask = find_mask(options, reference);
+  const std::string mask_layer = options.mask.empty() ? "mask" : options.mask;
+  PictureFile reference = read_picture(
+      options.reference, [&](const std::string& layer) { return !options.no_mask && layer == mask_layer; });
+  PictureFile test = read_picture(options.test, no_layer);
+  check_comparable(options, reference, test);
+  std::vector<std::string> notes;
+  for (const auto& [file, path] : {std::pair(&reference, &options.reference), std::pair(&test, &options.test)}) {
+    encode_as_srgb(*file);
+    for (const std::string& note : file->notes)
+      notes.push_back(fmt::format("{}: {}", path->string(), note));
+  }
+  Mask mask = find_mask(options, reference);
+  drop_empty_mask(options, mask, notes);
+  for (const std::string& note : notes)
+    fmt::print(stderr, "note: {}\n", note);
   const bool display_encoded = reference.display_encoded;
   std::vector<Bound> bounds;
   for (const std::string& text : options.fail_above)
@@ -172,6 +218,7 @@ int compare(const Options& options) {
     if (bound.broken_by(result.at(bound.column))) broken.push_back(&bound);
   if (options.json) {
     ordered_json out = to_json(comparison, result, options, test.image, display_encoded, mask.source);
+    out["notes"] = notes;
     out["failed"] = ordered_json::array();
     for (const Bound* bound : broken)
       out["failed"].push_back(bound->column);
@@ -187,9 +234,9 @@ int compare(const Options& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& root, std::vector<Command>& commands) {
+void add_compare(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("compare", "Compare an image with a reference by image metrics");
+  cli::App* app = root.add_subcommand("compare", "Compare an image with a reference by image metrics");
   app->add_option("reference", options->reference, "The reference: EXR (scene-linear) or PNG (display-encoded)")
       ->required();
   app->add_option("test", options->test, "The image to judge: of the same kind and size")->required();
@@ -200,13 +247,13 @@ void add_compare(CLI::App& root, std::vector<Command>& commands) {
   app->add_flag("--json", options->json, "Print the values as JSON; the infinite PSNR of equal images is null");
   app->add_option("--map", options->map,
                   "Write FLIP's error map: .png in colours from black (0) to pale yellow (1), .exr as values");
-  CLI::Option* mask = app->add_option(
+  cli::Option* mask = app->add_option(
       "--mask", options->mask,
       "Give every value under a mask too (above 0.5): an image file, or a layer of the reference; a layer named mask "
       "is used without asking");
   app->add_flag("--no-mask", options->no_mask, "Leave the reference's layer mask alone")->excludes(mask);
   app->add_option("--ppd", options->pixels_per_degree, "FLIP's pixels per degree of visual angle")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(cli::Range(1.0, 1000.0))
       ->capture_default_str();
   app->add_option("--fail-above", options->fail_above,
                   "metric=number: exit with status 3 if the value is above; repeatable")
@@ -217,6 +264,8 @@ void add_compare(CLI::App& root, std::vector<Command>& commands) {
       "PNG: LDR-FLIP, and the other metrics on the encoded values in [0, 1]. EXR: HDR-FLIP with the ACES curve and\n"
       "automatic exposures, and the other metrics on radiance; PSNR's peak is the largest component of the reference,\n"
       "SSIM is taken of the image clamped to [0, 1] and sRGB-encoded. Alpha is not compared.\n"
+      "Pictures are compared in the EXR's display window, 0 where nothing is stored; other primaries than Rec. 709's\n"
+      "(chromaticities) are converted, and a PNG's gamma (gAMA) to sRGB's encoding; its ICC profile is not applied.\n"
       "Example: pellucid compare truth.exr hulls.exr -m flip,rmse --map error.png --fail-above flip_mean=0.05");
   commands.push_back({app, [options] { return compare(*options); }});
 }

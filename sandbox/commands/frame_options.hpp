@@ -5,11 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
-#include "algorithms/scene/images/image.hpp"
-#include "sandbox/commands/arguments.hpp"
+#include "sandbox/arguments.hpp"
+#include "sandbox/commands/command_line.hpp"
 
 /// What render and reference share: which picture of which scene, where it goes, and what its file says of itself.
 namespace pellucid::sandbox {
@@ -22,12 +19,6 @@ struct FrameOptions {
   DisplayOptions display;
   bool json = false;
 };
-void add_frame_options(CLI::App&, FrameOptions&);
-
-/// Where a file comes from: version, commit, time, command line.
-nlohmann::ordered_json file_provenance();
-/// What a file must know to be made again (`pellucid reproduce FILE.exr`), and where it comes from.
-Attributes file_attributes(const char* command, const nlohmann::ordered_json& recipe,
-                           const nlohmann::ordered_json& origin);
+void add_frame_options(cli::App&, FrameOptions&);
 
 }  // namespace pellucid::sandbox

@@ -1,15 +1,26 @@
 // pellucid list, describe, devices.
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
+#include "gl/device_node.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
-#include "sandbox/reproduce/papers.hpp"
+#include "sandbox/viewer/state/parameter_json.hpp"
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/quantities/quantities.hpp"
 
 namespace pellucid::sandbox {
@@ -25,6 +36,7 @@ ordered_json techniques_json() {
                    {"reference", t.reference},
                    {"baseline", t.baseline},
                    {"interfaces", t.interfaces},
+                   {"reliefs", t.reliefs},
                    {"maps", t.maps},
                    {"doc", t.doc}});
   }
@@ -41,8 +53,8 @@ ordered_json scenes_json() {
 
 ordered_json papers_json() {
   ordered_json out = ordered_json::array();
-  for (const Paper& p : papers())
-    out.push_back({{"name", p.name}, {"title", p.title}});
+  for (const sweeps::PaperPointer& paper : sweeps::papers())
+    out.push_back({{"name", paper->name}, {"title", paper->title}});
   return out;
 }
 
@@ -69,10 +81,12 @@ ordered_json quantities_json() {
 }
 
 void print_rows(std::string_view heading, const ordered_json& rows, const char* text_field) {
+  std::size_t width = 20;
+  for (const auto& row : rows)
+    width = std::max(width, row.at("name").get<std::string>().size());
   fmt::print("{}\n", heading);
-  for (const auto& row : rows) {
-    fmt::print("  {:<20} {}\n", row.at("name").get<std::string>(), row.at(text_field).get<std::string>());
-  }
+  for (const auto& row : rows)
+    fmt::print("  {:<{}} {}\n", row.at("name").get<std::string>(), width, row.at(text_field).get<std::string>());
 }
 
 int list(const std::string& what, bool json) {
@@ -92,29 +106,6 @@ int list(const std::string& what, bool json) {
   return kDone;
 }
 
-ordered_json value_json(const Value& value) {
-  return std::visit([](const auto& v) { return ordered_json(v); }, value);
-}
-
-ordered_json parameters_json(std::span<const ParameterInfo> infos) {
-  ordered_json out = ordered_json::array();
-  for (const ParameterInfo& p : infos) {
-    ordered_json entry{{"name", p.name}, {"type", name(p.type)}, {"default", value_json(p.default_value)}};
-    if (p.type == ValueType::choice) entry["choices"] = p.choices;
-    if (p.type == ValueType::integer || p.type == ValueType::real) {
-      entry["min"] = p.min;
-      entry["max"] = p.max;
-    }
-    entry["unit"] = p.unit;
-    entry["symbol"] = p.symbol;
-    entry["cite"] = p.cite;
-    entry["change"] = name(p.when);
-    entry["doc"] = p.doc;
-    out.push_back(std::move(entry));
-  }
-  return out;
-}
-
 std::string range_text(const ParameterInfo& p) {
   switch (p.type) {
     case ValueType::boolean:
@@ -129,9 +120,12 @@ std::string range_text(const ParameterInfo& p) {
 }
 
 void print_parameters(std::span<const ParameterInfo> infos) {
+  std::size_t width = 14;
+  for (const ParameterInfo& p : infos)
+    width = std::max(width, p.name.size());
   for (const ParameterInfo& p : infos) {
-    fmt::print("  {:<14} {}{}\n", p.name, p.symbol.empty() ? "" : p.symbol + ": ", p.doc);
-    fmt::print("  {:<14}   {} in {}, default {}; {}; a change costs: {}\n", "", name(p.type), range_text(p),
+    fmt::print("  {:<{}} {}{}\n", p.name, width, p.symbol.empty() ? "" : p.symbol + ": ", p.doc);
+    fmt::print("  {:<{}}   {} in {} (default: {}); {}; a change costs: {}\n", "", width, name(p.type), range_text(p),
                to_text(p.default_value), p.cite, name(p.when));
   }
 }
@@ -159,6 +153,7 @@ int describe(const std::string& wanted, bool json) {
   const auto scene = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& s) { return s.name == wanted; });
   if (scene != scenes.end() || wanted.ends_with(".toml")) {
     Scene loaded = load_scene(wanted);
+    print_warnings(loaded);
     if (json) {
       ordered_json views = ordered_json::array();
       for (const View& v : loaded.views)
@@ -169,6 +164,7 @@ int describe(const std::string& wanted, bool json) {
                                       {"stand_in", loaded.stand_in},
                                       {"views", views},
                                       {"volume", volume_json(loaded)},
+                                      {"warnings", loading_facts(loaded).warnings},
                                       {"parameters", parameters_json(loaded.parameters().infos())}}
                              .dump(2));
       return kDone;
@@ -213,13 +209,15 @@ int devices(bool json) {
                      {"platform", d.platform},
                      {"vendor", d.vendor},
                      {"renderer", d.renderer},
-                     {"version", d.version}});
+                     {"version", d.version},
+                     {"node", gl::device_node(d.index)}});
     }
     fmt::print("{}\n", out.dump(2));
   } else {
     for (const gl::Device& d : found) {
-      fmt::print("{:>12}  {}, {}, OpenGL {}\n", d.index < 0 ? d.platform : fmt::format("--device {}", d.index),
-                 d.vendor, d.renderer, d.version);
+      const std::string node = gl::device_node(d.index);
+      fmt::print("{:>12}  {}, {}, OpenGL {}{}\n", d.index < 0 ? d.platform : fmt::format("--device {}", d.index),
+                 d.vendor, d.renderer, d.version, node.empty() ? "" : ", " + node);
     }
   }
   if (found.empty()) throw RuntimeError("no EGL device or platform gives an OpenGL 4.5 core context");
@@ -228,28 +226,28 @@ int devices(bool json) {
 
 }  // namespace
 
-void add_list(CLI::App& root, std::vector<Command>& commands) {
+void add_list(cli::App& root, std::vector<Command>& commands) {
   struct Options {
     std::string what;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
 
-  CLI::App* list_app = root.add_subcommand("list", "List techniques, scenes, papers and quantities");
+  cli::App* list_app = root.add_subcommand("list", "List techniques, scenes, papers and quantities");
   list_app->add_option("what", options->what, "techniques, scenes, papers or quantities; the first three without it")
-      ->check(CLI::IsMember({"techniques", "scenes", "papers", "quantities"}));
+      ->check(cli::IsMember({"techniques", "scenes", "papers", "quantities"}));
   list_app->add_flag("--json", options->json, "Print JSON");
   list_app->footer("Example: pellucid list scenes");
   commands.push_back({list_app, [options] { return list(options->what, options->json); }});
 
-  CLI::App* describe_app =
+  cli::App* describe_app =
       root.add_subcommand("describe", "Show the parameters of a technique or a scene, or explain a quantity");
   describe_app->add_option("name", options->what, "A technique, a scene or a quantity")->required();
   describe_app->add_flag("--json", options->json, "Print JSON");
-  describe_app->footer("Examples:\n  pellucid describe sampling_hulls\n  pellucid describe flip_mean");
+  describe_app->footer("Examples:\n  pellucid describe volume_slices\n  pellucid describe flip_mean");
   commands.push_back({describe_app, [options] { return describe(options->what, options->json); }});
 
-  CLI::App* devices_app = root.add_subcommand("devices", "List the devices that can render");
+  cli::App* devices_app = root.add_subcommand("devices", "List the devices that can render");
   devices_app->add_flag("--json", options->json, "Print JSON");
   devices_app->footer(
       "Example: pellucid devices --json\nThe number is what --device takes; without it the first device is used.");

@@ -1,24 +1,34 @@
 // pellucid reference.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/shadow_maps.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/images/finite.hpp"
+#include "algorithms/scene/loading_facts.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sandbox/commands/file_provenance.hpp"
 #include "sandbox/commands/frame_options.hpp"
 #include "sandbox/commands/scene_facts.hpp"
+#include "sandbox/viewer/out/tev_client.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/metrics/metrics.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
+#include "sweeps/spec/point_json.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -32,6 +42,7 @@ struct Options : FrameOptions {
   int slices = sweeps::ReferenceSettings{}.slices;
   double shadow_share = 0;
   SurfaceOptions tracing;
+  std::string tev;  // HOST:PORT
 };
 
 sweeps::ReferenceSettings reference_settings(const Options& options) {
@@ -47,6 +58,7 @@ sweeps::ReferenceSettings reference_settings(const Options& options) {
   settings.shadow_share = options.shadow_share;
   settings.samples = options.tracing.samples;
   settings.caustics = options.tracing.caustics;
+  settings.refract_light = options.tracing.refract_light;
   return settings;
 }
 
@@ -61,11 +73,12 @@ std::map<std::string, Value> reference_parameters(const Options& options, Scene&
   };
   for (const std::string& setting : options.settings) {
     const auto [name, value] = parse_assignment(setting);
-    if (name.starts_with("scene.")) {
-      parse(name, name.substr(6), value, "scene " + scene.name, scene.parameters().infos());
-      scene.parameters().assign(name.substr(6), out[name], "scene " + scene.name);
-    } else if (draws && name.starts_with("shadow.")) {
-      parse(name, name.substr(7), value, "shadow", parameter_table<ShadowSettings>().infos());
+    const ParameterName routed = route(name);
+    if (routed.owner == ParameterOwner::scene) {
+      parse(name, routed.local, value, "scene " + scene.name, scene.parameters().infos());
+      scene.parameters().assign(routed.local, out[name], "scene " + scene.name);
+    } else if (draws && routed.owner == ParameterOwner::shadow) {
+      parse(name, routed.local, value, "shadow", parameter_table<ShadowSettings>().infos());
     } else {
       throw InputError(fmt::format("-s {}: a reference has no technique, so only scene. parameters can be set{}",
                                    setting,
@@ -73,7 +86,7 @@ std::map<std::string, Value> reference_parameters(const Options& options, Scene&
     }
   }
   for (const ParameterInfo& info : scene.parameters().infos())
-    out["scene." + info.name] = scene.parameters().get(info.name);
+    out[full_name(ParameterOwner::scene, info.name)] = scene.parameters().get(info.name);
   return out;
 }
 
@@ -105,13 +118,17 @@ ordered_json statistics_json(const SurfaceStatistics& s) {
 int reference(const Options& options) {
   const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
+  std::optional<TevClient> tev;
+  if (!options.tev.empty()) tev.emplace(options.tev);  // before the work
   sweeps::ReferenceSettings settings = reference_settings(options);
   const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
   const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
   Scene loaded = load_scene(options.scene);
+  check_output_is_no_input(options.output, loaded);
+  print_warnings(loaded);
   settings = sweeps::settled(settings, loaded.name, has_interfaces(loaded), loaded.volume.has_value());
   const std::map<std::string, Value> parameters = reference_parameters(options, loaded, draws);
-  const Camera camera{loaded.find_view(options.view), size.width, size.height};
+  const Camera camera{view_of(loaded, options.view), size.width, size.height};
   ReferenceOptions tracing;
   tracing.tolerance = options.tolerance;
   tracing.max_steps = options.max_steps;
@@ -131,7 +148,7 @@ int reference(const Options& options) {
     context.emplace(gl::ContextOptions{.device = options.device});
     session.emplace(std::move(loaded), techniques().front().name, camera.view.name, size.width, size.height);
     for (const auto& [name, value] : parameters) {
-      if (name.starts_with("shadow.")) session->assign(name, value);
+      if (route(name).owner == ParameterOwner::shadow) session->assign(name, value);
     }
     surfaces = sweeps::reference_surfaces(*session, settings);
     if (of_slices)
@@ -163,6 +180,7 @@ int reference(const Options& options) {
     recipe["reflections"] = rays.reflections;
     recipe["cut"] = rays.cut;
     recipe["caustics"] = rays.caustics;
+    if (rays.refract_light) recipe["refract_light"] = true;
     if (rays.caustics) {
       recipe["photons"] = rays.photons;
       recipe["caustic_radius_m"] = rays.caustic_radius_m;
@@ -186,13 +204,23 @@ int reference(const Options& options) {
     file.layers["shadow"] = sweeps::shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
   }
   if (terminal) fmt::print(stderr, "\r");
+  require_finite(file.image, "reference");
   file.attributes = file_attributes("reference", recipe, origin);
   file.attributes["pellucid.reference_error"] = errors.dump();
   write_picture(options.output, file, options.display);
+  if (from_rays && exact.surfaces.lost_weight_mean > 0) {
+    fmt::print(
+        stderr,
+        "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its mesh is "
+        "open or inside out\n",
+        exact.surfaces.lost_weight_mean);
+  }
+  if (tev) tev->send("reference of " + options.scene, file.image);
   if (options.json) {
     ordered_json out = recipe;
     out.update(errors);
     out["volume"] = volume_json(scene);
+    out["warnings"] = loading_facts(scene).warnings;
     out["output"] = options.output.string();
     fmt::print("{}\n", out.dump(2));
     return kDone;
@@ -211,12 +239,6 @@ int reference(const Options& options) {
         "{:.2g}, mean {:.2g}\n",
         options.output.string(), s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
         s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
-    if (s.lost_weight_mean > 0) {
-      fmt::print(stderr,
-                 "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its "
-                 "mesh is open or inside out\n",
-                 s.lost_weight_mean);
-    }
   }
   if (of_slices) {
     fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", options.output.string(),
@@ -225,62 +247,66 @@ int reference(const Options& options) {
   return kDone;
 }
 
-void add_rays(CLI::App& app, SurfaceOptions& rays) {
+void add_rays(cli::App& app, SurfaceOptions& rays) {
   app.add_option("--samples", rays.samples,
-                 "Rays a pixel, stratified over its square; 1 is its centre. The standard error is stated")
-      ->check(CLI::Range(1, 65536))
+                 "Rays per pixel, stratified over its square; 1 is its centre. The standard error is stated")
+      ->check(cli::Range(1, 65536))
       ->capture_default_str();
   app.add_option("--reflections", rays.reflections,
                  "Most reflections inside a dielectric; light that needs more is dark")
-      ->check(CLI::Range(0, 1024))
+      ->check(cli::Range(0, 1024))
       ->capture_default_str();
   app.add_option("--cut", rays.cut, "Share of a pixel's light below which a branch at an interface is left out")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(cli::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("--caustics", rays.caustics, "Light that reaches surfaces through objects, by photons");
-  app.add_option("--photons", rays.photons, "Of --caustics, for each light that casts shadows and each object")
-      ->check(CLI::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))
+  app.add_flag("--refract-light", rays.refract_light,
+               "Bend the lights' rays at the media of reliefs, which Timonen leaves straight");
+  app.add_option("--photons", rays.photons,
+                 "Photons with --caustics, for each light that casts shadows and each object")
+      ->check(cli::Range(std::uint64_t{1024}, std::uint64_t{1} << 28))
       ->capture_default_str();
   app.add_option("--caustic-radius", rays.caustic_radius_m,
                  "Radius [m] over which a photon's light is spread; 0: 1 % of the largest object's")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(cli::Range(0.0, 1e6))
       ->capture_default_str();
 }
 
 }  // namespace
 
-void add_reference(CLI::App& root, std::vector<Command>& commands) {
+void add_reference(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("reference", "Compute the ground truth of a scene on the CPU");
+  cli::App* app = root.add_subcommand("reference", "Compute the ground truth of a scene on the CPU");
   add_frame_options(*app, *options);
   app->add_option(
          "--surfaces", options->surfaces,
          "rays: surfaces traced with Embree; raster: from the forward pass, so that silhouettes are the same as in a "
          "rendering, with exact shadows; forward: with its shadow maps too, so that a metric sees the medium alone")
-      ->check(CLI::IsMember({"rays", "raster", "forward"}))
+      ->check(cli::IsMember({"rays", "raster", "forward"}))
       ->capture_default_str();
   add_rays(*app, options->tracing);
   app->add_option("--tolerance", options->tolerance, "Change of radiance at which a pixel counts as converged")
-      ->check(CLI::Range(1e-12, 1.0))
+      ->check(cli::Range(1e-12, 1.0))
       ->capture_default_str();
   app->add_option("--max-steps", options->max_steps, "Most steps along a ray")
-      ->check(CLI::Range(2, 1 << 20))
+      ->check(cli::Range(2, 1 << 20))
       ->capture_default_str();
   app->add_option("--method", options->method,
                   "exact: the medium is integrated; slices: the picture of very many slices that Imagire et al. "
                   "2007 judge by, with its distance from the exact one")
-      ->check(CLI::IsMember({"exact", "slices"}))
+      ->check(cli::IsMember({"exact", "slices"}))
       ->capture_default_str();
-  const CLI::Option* slices = app->add_option("--slices", options->slices, "How many, of --method slices")
-                                  ->check(CLI::Range(1, 4096))
+  const cli::Option* slices = app->add_option("--slices", options->slices, "Slices with --method slices")
+                                  ->check(cli::Range(1, 4096))
                                   ->capture_default_str();
-  const CLI::Option* format = app->add_option("--format", options->format, "half or single: what the slices blend into")
-                                  ->check(CLI::IsMember({"half", "single"}))
+  const cli::Option* format = app->add_option("--format", options->format, "half or single: what the slices blend into")
+                                  ->check(cli::IsMember({"half", "single"}))
                                   ->capture_default_str();
   app->add_option("--shadow-share", options->shadow_share,
                   "Add a layer `shadow`: the pixels whose luminance the shadows in the medium lower by more than this "
                   "share")
-      ->check(CLI::Range(0.0, 0.99));
+      ->check(cli::Range(0.0, 0.99));
+  app->add_option("--tev", options->tev, "HOST:PORT of a tev or HDRView window that shows the picture too");
   app->footer(
       "Examples:\n"
       "  pellucid reference fog_forest --size 360x270 -o truth.exr\n"
@@ -288,7 +314,7 @@ void add_reference(CLI::App& root, std::vector<Command>& commands) {
       "  pellucid reference teapot_room --surfaces raster --shadow-share 0.05 -o truth.exr\n"
       "  pellucid compare truth.exr hulls.exr --mask shadow");
   commands.push_back({app, [options, slices, format] {
-                        for (const CLI::Option* option : {slices, format}) {
+                        for (const cli::Option* option : {slices, format}) {
                           if (option->count() > 0 && options->method != "slices") {
                             throw InputError(fmt::format("{} goes with --method slices", option->get_name()));
                           }

@@ -1,6 +1,10 @@
 // pellucid reproduce.
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -30,8 +34,9 @@ int reproduce(const Options& options) {
   }
   if (options.tolerance) throw InputError("--tolerance is for a file");
   std::error_code error;
-  if (std::filesystem::is_regular_file(options.what, error)) {
-    throw InputError(fmt::format("{}: only an EXR can be made again: it knows what made it", options.what));
+  if (!options.what.ends_with(".toml") && std::filesystem::is_regular_file(options.what, error)) {
+    throw InputError(fmt::format(
+        "{}: only a paper's file (.toml) or an EXR, which knows what made it, can be made again", options.what));
   }
   return reproduce_papers({.what = options.what,
                            .folder = options.folder,
@@ -42,11 +47,12 @@ int reproduce(const Options& options) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& root, std::vector<Command>& commands) {
+void add_reproduce(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("reproduce", "Make a paper's tables and figures again, or a picture");
+  cli::App* app = root.add_subcommand("reproduce", "Make a paper's tables and figures again, or a picture");
   app->add_option("what", options->what,
-                  "A paper (pellucid list papers), all, or an EXR that pellucid render or reference wrote")
+                  "A paper (pellucid list papers) or all, a file of your own FILE.toml, or an EXR that pellucid render "
+                  "or reference wrote")
       ->required();
   app->add_option("-o,--output", options->folder, "Folder of the results; made when missing")->required();
   app->add_flag("--preview", options->preview, "Fewer and smaller measurements: minutes instead of hours");
@@ -56,7 +62,7 @@ void add_reproduce(CLI::App& root, std::vector<Command>& commands) {
          fmt::format("Largest difference of a channel that a file made again on the same device and commit may "
                      "show, else status 3; {} without it",
                      FileOptions{}.tolerance))
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::Range(0.0, 1e9));
   app->add_flag("--json", options->json, "Print what came out as JSON");
   app->footer(
       "A paper: its sweeps are measured, its tables, figures and pictures made, and DIR/index.html shows them all. "
@@ -65,7 +71,7 @@ void add_reproduce(CLI::App& root, std::vector<Command>& commands) {
       "A file: it is rendered again into DIR from what it says of itself, and compared.\n"
       "Examples:\n"
       "  pellucid reproduce all --preview -o results\n"
-      "  pellucid reproduce sampling_hulls -o results\n"
+      "  pellucid reproduce my.toml -o results\n"
       "  pellucid reproduce fog.exr -o again");
   commands.push_back({app, [options] { return reproduce(*options); }});
 }

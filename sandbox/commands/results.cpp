@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/store/csv.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/tables/tables.hpp"
@@ -27,6 +29,7 @@ struct ResultsOptions {
 
 struct TableOptions {
   std::string name, store, format = "md", device;
+  LatexOptions latex;
   std::filesystem::path output;
 };
 
@@ -49,14 +52,16 @@ int results(const ResultsOptions& options) {
 
 int table(const TableOptions& options) {
   const TableFormat format = parse_table_format(options.format);
-  const TableInfo info = find_table(options.name);
+  const PaperEntry entry = find_entry(options.name, "tables", "table");
+  if ((options.latex.siunitx || options.latex.bold_best) && format != TableFormat::latex)
+    throw InputError("--siunitx and --bold-best are of --format latex");
   if (!options.device.empty() && options.store.empty()) {
     throw InputError("--device-name chooses among a store's devices; --store S.db is missing");
   }
   const std::vector<nlohmann::json> rows =
       options.store.empty() ? std::vector<nlohmann::json>{} : read_rows(options.store);
-  const Table filled = make_table(info.name, rows, options.device);
-  const std::string text = format_table(filled, format);
+  const Table filled = make_table(entry, rows, options.device);
+  const std::string text = format_table(filled, format, options.latex);
   if (options.output.empty()) {
     print_out(text);
   } else {
@@ -65,8 +70,8 @@ int table(const TableOptions& options) {
   if (filled.sweep.empty()) {
     fmt::print(stderr, "{}; to fill the table: pellucid sweep run {} --store {}\n",
                options.store.empty() ? "no store was named, so the numbers are the paper's alone"
-                                     : fmt::format("{} has no rows of {}", options.store, info.spec),
-               info.spec, options.store.empty() ? "S.db" : options.store);
+                                     : fmt::format("{} has no rows of {}", options.store, filled.info.spec),
+               filled.info.spec_path, options.store.empty() ? "S.db" : options.store);
   } else if (format == TableFormat::csv || format == TableFormat::json) {
     for (const std::string& note : filled.notes)
       fmt::print(stderr, "note: {}\n", note);
@@ -74,7 +79,7 @@ int table(const TableOptions& options) {
   return kDone;
 }
 
-void add_json_flag(CLI::App& app, std::string& format) {
+void add_json_flag(cli::App& app, std::string& format) {
   app.add_flag_callback(
          "--json", [&format] { format = "json"; }, "the same as --format json")
       ->excludes("--format");
@@ -89,12 +94,12 @@ std::string names_text() {
 
 }  // namespace
 
-void add_results(CLI::App& root, std::vector<Command>& commands) {
+void add_results(cli::App& root, std::vector<Command>& commands) {
   auto rows = std::make_shared<ResultsOptions>();
-  CLI::App* results_app = root.add_subcommand("results", "Print every row of a store, failed ones included");
+  cli::App* results_app = root.add_subcommand("results", "Print every row of a store, failed ones included");
   results_app->add_option("store", rows->store, "the SQLite file of a sweep")->required();
   results_app->add_option("--format", rows->format, "csv or json")
-      ->check(CLI::IsMember({"csv", "json"}))
+      ->check(cli::IsMember({"csv", "json"}))
       ->capture_default_str();
   add_json_flag(*results_app, rows->format);
   results_app->footer(
@@ -104,22 +109,30 @@ void add_results(CLI::App& root, std::vector<Command>& commands) {
   commands.push_back({results_app, [rows] { return results(*rows); }});
 
   auto options = std::make_shared<TableOptions>();
-  CLI::App* table_app = root.add_subcommand("table", "Print a paper's table, the published numbers beside ours");
-  table_app->add_option("name", options->name, "the table, see below")->required();
+  cli::App* table_app =
+      root.add_subcommand("table", "Print a table of a paper, or of your own file, the published numbers beside ours");
+  table_app->add_option("name", options->name, "a table below, or FILE.toml:NAME of your own file (sweeps/README.md)")
+      ->required();
   table_app->add_option("--store", options->store,
                         "where our numbers come from; without it only the paper's are shown");
   table_app->add_option("--format", options->format, "md, csv, latex (booktabs) or json")
-      ->check(CLI::IsMember({"md", "csv", "latex", "json"}))
+      ->check(cli::IsMember({"md", "csv", "latex", "json"}))
       ->capture_default_str();
   add_json_flag(*table_app, options->format);
+  table_app->add_flag("--siunitx", options->latex.siunitx, "LaTeX: columns of siunitx, aligned at the decimal point");
+  table_app->add_flag("--bold-best", options->latex.bold_best,
+                      "LaTeX: the best measured value of a row in bold, where its quantity says which way is better");
   table_app->add_option("--device-name", options->device,
                         "take the rows whose device and driver contain this, where a store holds several");
   table_app->add_option("-o,--output", options->output, "write to this file instead of standard output");
-  table_app->footer(names_text() +
-                    "\nExamples:\n"
-                    "  pellucid sweep run sampling_hulls_table1 --store hulls.db\n"
-                    "  pellucid table sampling_hulls.table1 --store hulls.db\n"
-                    "  pellucid table sampling_hulls.table1 --store hulls.db --format latex -o table1.tex");
+  table_app->footer([] {
+    return names_text() +
+           "\nExamples:\n"
+           "  pellucid sweep run sampling_hulls_table1 --store hulls.db\n"
+           "  pellucid table sampling_hulls.table1 --store hulls.db\n"
+           "  pellucid table sampling_hulls.table1 --store hulls.db --format latex --bold-best -o table1.tex\n"
+           "  pellucid table my.toml:hulls --store my.db";
+  });
   commands.push_back({table_app, [options] { return table(*options); }});
 }
 

@@ -2,15 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/loading_facts.hpp"
+#include "sandbox/arguments.hpp"
+
 namespace pellucid::sandbox {
-namespace {
-
-/// A volume that is no file's has the range [0, 1], which says nothing.
-bool from_file(const Volume& volume) {
-  return volume.file_range != glm::vec2(0.0F, 1.0F);
-}
-
-}  // namespace
 
 nlohmann::ordered_json volume_json(const Scene& scene) {
   if (!scene.volume) return nullptr;
@@ -20,7 +15,7 @@ nlohmann::ordered_json volume_json(const Scene& scene) {
                              {"voxel_spacing_m", {spacing.x, spacing.y, spacing.z}},
                              {"extinction_per_m", volume.extinction},
                              {"file_range", nullptr}};
-  if (from_file(volume)) out["file_range"] = {volume.file_range.x, volume.file_range.y};
+  if (const auto& range = loading_facts(scene).file_range) out["file_range"] = {range->x, range->y};
   return out;
 }
 
@@ -31,10 +26,19 @@ std::string volume_text(const Scene& scene) {
   std::string text =
       fmt::format("{}×{}×{} voxels of {:.3g} × {:.3g} × {:.3g} m, extinction {:.4g} 1/m at density 1", volume.size.x,
                   volume.size.y, volume.size.z, spacing.x, spacing.y, spacing.z, volume.extinction);
-  if (from_file(volume)) {
-    text += fmt::format("; {:.6g} in the file is density 0, {:.6g} is 1", volume.file_range.x, volume.file_range.y);
-  }
+  if (const auto& range = loading_facts(scene).file_range)
+    text += fmt::format("; {} in the file is density 0, {} is 1", range->x, range->y);
   return text;
+}
+
+void check_output_is_no_input(const std::filesystem::path& output, const Scene& scene) {
+  for (const std::filesystem::path& file : loading_facts(scene).files)
+    check_no_input(output, file, "-o");
+}
+
+void print_warnings(const Scene& scene) {
+  for (const std::string& warning : loading_facts(scene).warnings)
+    fmt::print(stderr, "warning: {}\n", warning);
 }
 
 }  // namespace pellucid::sandbox

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -14,5 +15,11 @@ namespace pellucid::sandbox {
 nlohmann::ordered_json volume_json(const Scene&);
 /// The same as one line of words; empty without a volume.
 std::string volume_text(const Scene&);
+
+/// Throws InputError when `output` is one of the files that the scene was read from.
+void check_output_is_no_input(const std::filesystem::path& output, const Scene&);
+
+/// Prints the scene's warnings to standard error, a line each.
+void print_warnings(const Scene&);
 
 }  // namespace pellucid::sandbox

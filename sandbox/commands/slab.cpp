@@ -80,9 +80,9 @@ int slab(const Options& options) {
 
 }  // namespace
 
-void add_slab(CLI::App& root, std::vector<Command>& commands) {
+void add_slab(cli::App& root, std::vector<Command>& commands) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = root.add_subcommand("slab", "Compute how a scattering slab spreads a beam");
+  cli::App* app = root.add_subcommand("slab", "Compute how a scattering slab spreads a beam");
   app->add_option("--depth", options->depth, "Optical thickness: extinction times thickness")->required();
   app->add_option("--anisotropy", options->medium.anisotropy,
                   "Mean cosine of the scattering angle (Henyey and Greenstein's phase function), above -1 and below 1")
@@ -91,7 +91,7 @@ void add_slab(CLI::App& root, std::vector<Command>& commands) {
       ->required();
   app->add_option("--model", options->model,
                   fmt::format("What the transmission is fitted by: {} (default: gaussian)", kTransferModels))
-      ->check(CLI::IsMember({"gaussian", "unscattered", "two_gaussians"}));
+      ->check(cli::IsMember({"gaussian", "unscattered", "two_gaussians"}));
   app->add_flag("--json", options->json, "Print JSON");
   app->footer(
       "The beam is perpendicular and has unit flux, and the slab has no interface. Radiance is that of scattered "

@@ -5,20 +5,23 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/technique.hpp"
+#include "algorithms/technique_code.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/spec/plan.hpp"
+#include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/spec.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/run.hpp"
 #include "sweeps/workers/worker.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -31,7 +34,7 @@ struct SweepArguments {
   std::string store;
   std::optional<int> device;
   std::size_t limit = 0;
-  bool dry_run = false, retry_failed = false, quiet = false, as_json = false;
+  bool preview = false, dry_run = false, retry_failed = false, quiet = false, as_json = false;
 };
 
 /// What a store holds of a plan's points; empty when there is no store yet.
@@ -88,6 +91,25 @@ void print_status(const std::vector<BlockStatus>& blocks, bool as_json) {
     fmt::print("{:{}}  {:{}}  {:>7}  {:>7}  {:>7}  {:>7}\n", "", width, "total", width, total.planned, total.done,
                total.failed, total.left());
   }
+}
+
+/// Rows that code other than this program's has made: an older version, a later one, or shaders that were edited since.
+std::size_t count_of_other_code(const std::vector<StoredPoint>& points) {
+  std::map<std::string, std::string> current;
+  for (const TechniqueInfo& info : techniques())
+    current.emplace(info.name, code_hash(info.name));
+  return static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](const StoredPoint& point) {
+    const auto code = current.find(point.technique);
+    return code == current.end() || code->second != point.code_hash;
+  }));
+}
+
+void print_other_code(const std::string& store) {
+  const std::vector<StoredPoint> points = Store(store, Access::read).points();
+  const std::size_t other = count_of_other_code(points);
+  if (other == 0) return;
+  fmt::print(stderr, "{} of the store's {} rows {} made by other code; `sweep run` measures their points anew\n", other,
+             points.size(), other == 1 ? "was" : "were");
 }
 
 /// The points, the blocks and how long it may take, without GL.
@@ -165,7 +187,8 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
 }
 
 int run(const SweepArguments& arguments) {
-  const Spec spec = load_spec(arguments.spec);
+  const Spec spec =
+      load_spec(arguments.spec, installed_catalogue(), arguments.preview ? Extent::preview : Extent::full);
   const Plan plan = make_plan(spec);
   if (arguments.dry_run) return dry_run(spec, plan, arguments);
   if (arguments.store.empty()) throw InputError("--store S.db is missing: where the rows go");
@@ -179,50 +202,58 @@ int run(const SweepArguments& arguments) {
 
 int status(const SweepArguments& arguments) {
   if (arguments.store.empty()) {
+    if (arguments.preview) throw InputError("--preview goes with --store: a store knows its sweeps by itself");
     print_status(Store(arguments.spec, Access::read).status(), arguments.as_json);
+    print_other_code(arguments.spec);
     return kDone;
   }
-  const Spec spec = load_spec(arguments.spec);
+  const Spec spec =
+      load_spec(arguments.spec, installed_catalogue(), arguments.preview ? Extent::preview : Extent::full);
   const auto stored = stored_points(arguments.store);
   print_status(count_blocks(spec, make_plan(spec), stored), arguments.as_json);
+  if (!stored.empty()) print_other_code(arguments.store);
   return kDone;
 }
 
 }  // namespace
 
-void add_sweep(CLI::App& root, std::vector<Command>& commands) {
-  CLI::App* sweep = root.add_subcommand("sweep", "Measure a technique over its parameters");
+void add_sweep(cli::App& root, std::vector<Command>& commands) {
+  cli::App* sweep = root.add_subcommand("sweep", "Measure a technique over its parameters");
   sweep->require_subcommand(1);
   sweep->footer("The format of a spec, and what resuming means: sweeps/README.md");
 
   auto running = std::make_shared<SweepArguments>();
-  CLI::App* run_app = sweep->add_subcommand("run", "Measure every point of a spec that the store does not hold");
+  cli::App* run_app = sweep->add_subcommand("run", "Measure every point of a spec that the store does not hold");
   run_app->add_option("spec", running->spec, "a file SPEC.toml, or the name of a built-in spec")->required();
   run_app->add_option("--store", running->store, "SQLite file that rows go to; made when missing");
+  run_app->add_flag("--preview", running->preview, "the spec as its [preview] changes it: a quick run");
   run_app->add_flag("--dry-run", running->dry_run, "expand and check the spec, print its points, draw nothing");
   run_app->add_option("--device", running->device, "EGL device of the workers (pellucid devices)");
-  run_app->add_option("--limit", running->limit, "stop after so many points")->check(CLI::PositiveNumber);
+  run_app->add_option("--limit", running->limit, "stop after so many points")
+      ->check(cli::Range(std::size_t{1}, std::size_t{1} << 30));
   run_app->add_flag("--retry-failed", running->retry_failed, "measure points again that are recorded as failed");
   run_app->add_flag("--quiet", running->quiet, "no progress");
   run_app->add_flag("--json", running->as_json, "print the summary (with --dry-run: the points) as JSON");
   run_app->footer(
       "Examples:\n"
-      "  pellucid sweep run sampling_hulls_table1 --store results/hulls.db\n"
+      "  pellucid sweep run my.toml --store my.db\n"
+      "  pellucid sweep run my.toml --preview --store quick.db\n"
       "  pellucid sweep run my.toml --dry-run\n"
       "A sweep that was stopped or killed goes on when it is run again. Status 1: interrupted, or a point failed.");
   commands.push_back({run_app, [running] { return run(*running); }});
 
   auto asking = std::make_shared<SweepArguments>();
-  CLI::App* status_app = sweep->add_subcommand("status", "Count the points that are done, failed and left, by block");
+  cli::App* status_app = sweep->add_subcommand("status", "Count the points that are done, failed and left, by block");
   status_app->add_option("store_or_spec", asking->spec, "a store; with --store, a spec")->required();
   status_app->add_option("--store", asking->store, "the store to count a spec's points in");
+  status_app->add_flag("--preview", asking->preview, "with --store: of the spec's preview");
   status_app->add_flag("--json", asking->as_json, "print JSON");
   status_app->footer(
       "Examples:\n  pellucid sweep status results/hulls.db\n  pellucid sweep status my.toml --store my.db --json");
   commands.push_back({status_app, [asking] { return status(*asking); }});
 
   auto device = std::make_shared<std::optional<int>>();
-  CLI::App* worker_app = root.add_subcommand("worker", "Measure the points that `sweep run` sends");
+  cli::App* worker_app = root.add_subcommand("worker", "Measure the points that `sweep run` sends");
   worker_app->group("");  // not for people
   worker_app->add_option("--device", *device, "EGL device");
   commands.push_back({worker_app, [device] { return run_worker(*device); }});

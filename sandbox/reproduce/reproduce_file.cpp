@@ -1,8 +1,10 @@
 #include "sandbox/reproduce/reproduce_file.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,9 +12,9 @@
 
 #include "algorithms/scene/images/image.hpp"
 #include "gl/error.hpp"
-#include "sandbox/commands/commands.hpp"
-#include "sandbox/reproduce/self.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sandbox/reproduce/run_pellucid.hpp"
+#include "sandbox/status.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
 namespace {

@@ -2,7 +2,10 @@
 
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,12 +13,14 @@
 
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
+#include "plots/charts/chart.hpp"
 #include "plots/figures/figures.hpp"
-#include "sandbox/commands/arguments.hpp"
-#include "sandbox/commands/commands.hpp"
+#include "plots/pictures/picture_sets.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/reproduce/reproduce_report.hpp"
+#include "sandbox/status.hpp"
 #include "sweeps/spec/plan.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 
@@ -25,12 +30,9 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-std::vector<const Paper*> wanted(std::string_view what) {
-  std::vector<const Paper*> out;
-  if (what != "all") return {&find_paper(what, std::vector<std::string_view>{"all"})};
-  for (const Paper& paper : papers())
-    out.push_back(&paper);
-  return out;
+std::vector<sweeps::PaperPointer> wanted(const std::string& what) {
+  if (what == "all") return sweeps::papers();
+  return {sweeps::load_paper(what, {"all"})};
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -57,13 +59,17 @@ class Part {
 
 void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder, PaperOutcome& outcome) {
   // All specs are read before the first is measured: a mistake in the last shows at once.
-  std::vector<sweeps::Spec> specs;
-  for (const std::string_view name : options.preview ? outcome.paper->preview_specs : outcome.paper->specs)
-    specs.push_back(sweeps::load_spec(std::string(name)));
-  for (const sweeps::Spec& spec : specs) {
+  std::vector<std::pair<sweeps::Spec, std::string>> specs;
+  for (const sweeps::PaperSweep& sweep : outcome.paper->sweeps) {
+    const auto extent = options.preview ? sweeps::Extent::preview : sweeps::Extent::full;
+    specs.emplace_back(sweeps::load_spec(sweep.spec, sweeps::installed_catalogue(), extent),
+                       sweeps::shell_word(sweep.spec) + (options.preview ? " --preview" : ""));
+  }
+  for (const auto& [spec, words] : specs) {
     fmt::print(stderr, "{}: sweep {}\n", outcome.paper->name, spec.name);
     SweepOutcome sweep{.name = spec.name,
                        .title = spec.title,
+                       .words = words,
                        .store = (folder / (spec.name + ".db")).string(),
                        .summary = {},
                        .rows = {}};
@@ -88,7 +94,7 @@ std::string device_of(const PaperOutcome& outcome) {
 }
 
 void draw_all_pictures(const PaperOptions& options, const std::filesystem::path& folder, PaperOutcome& outcome) {
-  for (const PaperPictures& set : outcome.paper->pictures) {
+  for (const plots::PictureSet& set : plots::read_pictures(*outcome.paper)) {
     PictureOptions drawing{.folder = folder / "pictures" / set.name,
                            .device = options.device,
                            .preview = options.preview,
@@ -98,8 +104,8 @@ void draw_all_pictures(const PaperOptions& options, const std::filesystem::path&
       fmt::print(stderr, "{}: {}: {}\n", outcome.paper->name, set.name, what);
     };
     make_folder(drawing.folder);
-    PicturesOutcome result{.name = std::string(set.name),
-                           .title = std::string(set.title),
+    PicturesOutcome result{.name = set.name,
+                           .title = set.title,
                            .drawn = {},
                            .folder = fmt::format("{}/pictures/{}", outcome.folder, set.name),
                            .missing = {}};
@@ -139,42 +145,43 @@ void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
 }
 
 void write_figures(const std::filesystem::path& folder, PaperOutcome& outcome) {
-  const std::string prefix = std::string(outcome.paper->name) + ".";
   make_folder(folder / "figures");
-  for (const plots::FigureInfo& info : plots::figures()) {
-    if (!info.name.starts_with(prefix)) continue;
-    const std::string name = info.name.substr(prefix.size());
+  for (const plots::Figure& drawn : plots::read_figures(outcome.paper)) {
     FigureOutcome figure{
-        .name = info.name, .title = info.title, .doc = info.doc, .path = {}, .missing = {}, .repeat = {}};
-    const SweepOutcome* sweep = sweep_of(outcome, info.spec);
+        .name = drawn.full_name, .title = drawn.title, .doc = drawn.doc, .path = {}, .missing = {}, .repeat = {}};
+    const SweepOutcome* sweep = sweep_of(outcome, drawn.sweep);
     if (sweep == nullptr) {
-      figure.missing = fmt::format("the paper's sweeps have no {}", info.spec);
+      figure.missing = fmt::format("the paper's sweeps have no {}", drawn.sweep);
     } else {
+      const std::filesystem::path base = folder / "figures" / drawn.name;
       try {
+        const plots::Drawn drawing = plots::draw_figure(drawn, sweep->rows);
         for (const char* extension : {".svg", ".png", ".pdf"})
-          plots::write_figure(info.name, sweep->rows, folder / "figures" / (name + extension));
-        figure.path = outcome.folder + "/figures/" + name;
+          plots::write_svg_as(drawing.svg, base.string() + extension);
+        write_text_file(base.string() + ".csv", drawing.csv);
+        figure.path = outcome.folder + "/figures/" + drawn.name;
       } catch (const InputError& e) {
         figure.missing = e.what();  // nothing left to draw when its points failed: the report says so
       }
-      figure.repeat = fmt::format("pellucid plot {} --store {} -o {}", info.name, sweeps::shell_word(sweep->store),
-                                  sweeps::shell_word((folder / "figures" / (name + ".svg")).string()));
+      figure.repeat =
+          fmt::format("pellucid plot {} --store {} -o {}", sweeps::shell_word(outcome.paper->address(drawn.name)),
+                      sweeps::shell_word(sweep->store), sweeps::shell_word(base.string() + ".svg"));
     }
     outcome.figures.push_back(std::move(figure));
   }
 }
 
-PaperOutcome reproduce(const Paper& paper, const PaperOptions& options) {
+PaperOutcome reproduce(const sweeps::PaperPointer& paper, const PaperOptions& options) {
   PaperOutcome outcome;
-  outcome.paper = &paper;
+  outcome.paper = paper;
   outcome.preview = options.preview;
-  outcome.folder = paper.name;
+  outcome.folder = paper->name;
   outcome.started_utc = sweeps::utc_text(sweeps::unix_now_s());
   std::vector<std::string> command = process_arguments();
   if (!command.empty()) command.front() = "pellucid";
   outcome.command = sweeps::shell_line(command);
   if (options.device) outcome.device_option = fmt::format(" --device {}", *options.device);
-  const std::filesystem::path folder = options.folder / paper.name;
+  const std::filesystem::path folder = options.folder / paper->name;
   make_folder(folder);
   Part sweeping(outcome, "sweeps");
   run_sweeps(options, folder, outcome);
@@ -240,11 +247,16 @@ ordered_json to_json(const PaperOutcome& outcome) {
 }  // namespace
 
 int reproduce_papers(const PaperOptions& options) {
-  const std::vector<const Paper*> chosen = wanted(options.what);
+  const std::vector<sweeps::PaperPointer> chosen = wanted(options.what);
+  for (const sweeps::PaperPointer& paper : chosen) {
+    // A mistake in what comes last shows before hours of measuring.
+    plots::read_figures(paper);
+    plots::read_pictures(*paper);
+  }
   make_folder(options.folder);
   std::vector<PaperOutcome> outcomes;
-  for (const Paper* paper : chosen)
-    outcomes.push_back(reproduce(*paper, options));
+  for (const sweeps::PaperPointer& paper : chosen)
+    outcomes.push_back(reproduce(paper, options));
   const std::filesystem::path page = options.folder / "index.html";
   plots::write_report(make_report(outcomes), page);
 

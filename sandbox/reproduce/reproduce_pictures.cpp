@@ -1,9 +1,10 @@
 #include "sandbox/reproduce/reproduce_pictures.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,23 +12,27 @@
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/scene.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "algorithms/technique.hpp"
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 #include "gl/error.hpp"
 #include "plots/pictures/close_up.hpp"
 #include "plots/pictures/false_color.hpp"
-#include "sandbox/commands/arguments.hpp"
-#include "sandbox/reproduce/self.hpp"
+#include "sandbox/arguments.hpp"
+#include "sandbox/reproduce/run_pellucid.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/metrics/flip.hpp"
 #include "sweeps/metrics/metrics.hpp"
-#include "sweeps/store/provenance.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
 namespace {
 
 using nlohmann::json;
+using plots::PictureRecipe;
+using plots::PictureSet;
+using plots::Settings;
 
 constexpr int kEnlarged = 3;
 constexpr int kPreviewShrink = 2;  ///< along each side; close-ups are enlarged the more
@@ -62,7 +67,7 @@ std::string outdated(const ImageFile& file, const Wanted& wanted) {
   const json recipe = attribute(file, "pellucid.recipe"), origin = attribute(file, "pellucid.provenance");
   if (command == file.attributes.end() || command->second != wanted.command || !recipe.is_object() ||
       !origin.is_object()) {
-    return "it is of another making";
+    return "another command wrote it";
   }
   for (const auto& [name, value] : wanted.recipe.items()) {
     if (name != "parameters" && recipe.value(name, json()) != value) return fmt::format("its {} differs", name);
@@ -130,48 +135,51 @@ json value_of(const std::string& text) {
 }
 
 /// Every parameter of the technique as the picture has it.
-json parameters_of(const PaperPicture& picture) {
+json parameters_of(const PictureRecipe& picture) {
   json out = json::object();
   for (const ParameterInfo& info : find_technique(picture.technique).table().infos())
     out[info.name] = sweeps::value_to_json(info.default_value);
-  for (const std::string_view setting : picture.settings) {
-    const auto [name, text] = parse_assignment(std::string(setting));
+  for (const auto& [name, text] : picture.settings)
     out[name] = value_of(text);
-  }
   return out;
 }
 
 /// The settings of the set, which are of the scene alone.
-std::map<std::string, Value> scene_parameters(const PaperPictures& set, Scene scene) {
+std::map<std::string, Value> scene_parameters(const PictureSet& set, Scene scene) {
   std::map<std::string, Value> out;
-  for (const std::string_view setting : set.settings) {
-    const auto [name, text] = parse_assignment(std::string(setting));
+  for (const auto& [name, text] : set.settings) {
     const std::string bare = name.substr(std::string_view("scene.").size());
+    const std::string owner = "scene " + scene.name;
     const auto infos = scene.parameters().infos();
     const auto info = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == bare; });
-    assert(info != infos.end() && "a figure sets a parameter that its scene lacks");
-    out[name] = parse_value(*info, text, "scene " + scene.name);
+    if (info == infos.end()) throw unknown_parameter(bare, owner, infos);
+    out[name] = parse_value(*info, text, owner);
   }
   return out;
+}
+
+std::string told(const Settings& settings, std::string text) {
+  for (const auto& [name, value] : settings)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
+  return text;
 }
 
 /// One set of pictures in the making.
 class Drawing {
  public:
-  Drawing(const PaperPictures& set, const PictureOptions& options)
+  Drawing(const PictureSet& set, const PictureOptions& options)
       : set_(set), options_(options), shrink_(options.preview ? kPreviewShrink : 1) {
-    const std::string_view name = options.preview && !set.preview_scene.empty() ? set.preview_scene : set.scene;
-    const Scene scene = sweeps::load_again(std::string(name), scene_parameters(set, load_scene(std::string(name))));
+    const std::string& name = options.preview && !set.preview_scene.empty() ? set.preview_scene : set.scene;
+    const Scene scene = sweeps::load_again(name, scene_parameters(set, load_scene(name)));
     out_.name = set.name;
     out_.title = set.title;
     out_.scene = name;
-    for (const std::string_view setting : set.settings) {
-      const auto [field, value] = parse_assignment(std::string(setting));
-      out_.settings_text += fmt::format("{}{} {}", out_.settings_text.empty() ? "" : ", ", field, value);
-    }
+    out_.settings_text = told(set.settings, "");
+    out_.surfaces = set.surfaces;
+    out_.close_up_why = set.close_up_why;
     out_.scene_title = scene.title;
     out_.stand_in = scene.stand_in;
-    out_.view = scene.find_view(set.view).name;
+    out_.view = view_of(scene, set.view).name;
     out_.width = set.width / shrink_;
     out_.height = set.height / shrink_;
     out_.enlarged = kEnlarged * shrink_;
@@ -180,46 +188,46 @@ class Drawing {
 
   DrawnPictures draw() {
     draw_reference();
-    for (const PaperPicture& recipe : set_.pictures)
+    for (const PictureRecipe& recipe : set_.pictures)
       draw_picture(recipe);
     compare();
     options_.say("PNG, error maps, close-ups");
     write_plain();
     write_native();
-    write_close_ups();
+    if (has_close_up()) write_close_ups();
     return std::move(out_);
   }
 
  private:
+  bool has_close_up() const { return set_.close_up.width > 0; }
   std::filesystem::path path(const std::string& name) const { return options_.folder / name; }
 
   json place() const {
     json parameters = json::object();
-    for (const std::string_view setting : set_.settings) {
-      const auto [name, text] = parse_assignment(std::string(setting));
+    for (const auto& [name, text] : set_.settings)
       parameters[name] = value_of(text);
-    }
     return {{"scene", out_.scene},
             {"view", out_.view},
             {"width", out_.width},
             {"height", out_.height},
             {"parameters", parameters}};
   }
+  static void add_settings(std::vector<std::string>& command, const Settings& settings) {
+    for (const auto& [name, value] : settings)
+      command.insert(command.end(), {"-s", name + "=" + value});
+  }
   void add_place(std::vector<std::string>& command, const std::string& output) const {
-    for (const std::string_view setting : set_.settings)
-      command.insert(command.end(), {"-s", std::string(setting)});
+    add_settings(command, set_.settings);
     command.insert(command.end(), {"--view", out_.view, "--size", fmt::format("{}x{}", out_.width, out_.height)});
     if (options_.device) command.insert(command.end(), {"--device", std::to_string(*options_.device)});
     command.insert(command.end(), {"-o", path(output).string()});
   }
 
-  // Of a medium it takes the surfaces from the forward pass, shadow maps and all, so that the metrics see the medium
-  // alone.
   void draw_reference() {
     DrawnPicture& reference = out_.reference;
     reference.name = "reference";
     reference.exr = "reference.exr";
-    std::vector<std::string> command{"reference", out_.scene, "--surfaces", std::string(set_.surfaces)};
+    std::vector<std::string> command{"reference", out_.scene, "--surfaces", set_.surfaces};
     if (set_.samples > 1) command.insert(command.end(), {"--samples", std::to_string(set_.samples)});
     if (set_.caustics) command.emplace_back("--caustics");
     add_place(command, reference.exr);
@@ -239,20 +247,16 @@ class Drawing {
     out_.unconverged_share = error.value("unconverged_share", 0.0);
   }
 
-  void draw_picture(const PaperPicture& recipe) {
+  void draw_picture(const PictureRecipe& recipe) {
     DrawnPicture picture;
     picture.name = recipe.name;
     picture.label = recipe.label;
     picture.role = recipe.role;
     picture.technique = recipe.technique;
-    picture.settings_text = recipe.technique;
+    picture.settings_text = told(recipe.settings, recipe.technique);
     picture.exr = picture.name + ".exr";
     std::vector<std::string> command{"render", out_.scene, "-t", picture.technique};
-    for (const std::string_view setting : recipe.settings) {
-      const auto [name, value] = parse_assignment(std::string(setting));
-      picture.settings_text += fmt::format(", {} {}", name, value);
-      command.insert(command.end(), {"-s", std::string(setting)});
-    }
+    add_settings(command, recipe.settings);
     add_place(command, picture.exr);
     Wanted wanted{.command = "render", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
     wanted.recipe["technique"] = picture.technique;
@@ -307,16 +311,15 @@ class Drawing {
         truth_.image, nullptr,
         {.metrics = sweeps::MetricSet(std::vector<std::string>{"flip", "rmse"}), .keep_map = true});
     double largest = 0;
-    const int width = set_.close_up_width / shrink_, height = set_.close_up_height / shrink_;
+    const int width = set_.close_up.width / shrink_, height = set_.close_up.height / shrink_;
+    if (set_.close_up_of.empty()) out_.close_up = {set_.close_up.x / shrink_, set_.close_up.y / shrink_, width, height};
     for (std::size_t i = 0; i < files_.size(); ++i) {
       DrawnPicture& picture = out_.pictures[i];
       sweeps::ComparisonResult result = comparison.compare(files_[i].image);
       for (const char* metric : {"flip_mean", "flip_max", "rmse"})
         picture.metrics[metric] = result.at(metric);
       largest = std::max(largest, result.at("flip_max"));
-      if (set_.close_up_x >= 0) {
-        out_.close_up = {set_.close_up_x / shrink_, set_.close_up_y / shrink_, width, height};
-      } else if (picture.name == set_.close_up_of) {
+      if (picture.name == set_.close_up_of) {
         out_.close_up = plots::brightest_window(result.flip_map, width, height);
         out_.close_up_of = picture.label.empty() ? picture.name : picture.label;
       }
@@ -369,7 +372,7 @@ class Drawing {
       write(window_of(files_[i]), out_.pictures[i]);
   }
 
-  const PaperPictures& set_;
+  const PictureSet& set_;
   const PictureOptions& options_;
   int shrink_;
   std::string scene_hash_;
@@ -382,7 +385,7 @@ class Drawing {
 
 }  // namespace
 
-DrawnPictures draw_pictures(const PaperPictures& set, const PictureOptions& options) {
+DrawnPictures draw_pictures(const PictureSet& set, const PictureOptions& options) {
   return Drawing(set, options).draw();
 }
 

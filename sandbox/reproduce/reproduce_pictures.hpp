@@ -7,17 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "plots/pictures/close_up.hpp"
-#include "sandbox/reproduce/papers.hpp"
+#include "plots/pictures/picture_sets.hpp"
 
 namespace pellucid::sandbox {
 
 /// One picture of a set, as drawn. Paths are relative to the folder that draw_pictures() was given.
 struct DrawnPicture {
   std::string name;
-  std::string label, role;    ///< of PaperPicture
+  std::string label, role;    ///< of PictureRecipe
   std::string technique;      ///< empty for the reference
-  std::string settings_text;  ///< "sampling_hulls, hulls 2, samples 4"; empty for the reference
+  std::string settings_text;  ///< "volume_slices, slices 64"; empty for the reference
   std::string exr, png;
   std::string map_exr, map_png;        ///< FLIP against the reference; empty for the reference itself
   std::string native_exr, native_png;  ///< the technique's own error by pixel; empty where the paper asks for none
@@ -35,14 +34,16 @@ struct DrawnPictures {
   std::string scene, scene_title, stand_in, view;
   std::string settings_text;  ///< "scene.time_s 5"; empty when the scene is as it is
   int width = 0, height = 0;
+  std::string surfaces;  ///< of the reference: rays, raster or forward
   DrawnPicture reference;
   double step_error_max = 0, step_error_mean = 0, unconverged_share = 0;
   std::vector<DrawnPicture> pictures;  ///< in the order of the paper
-  plots::Window close_up;
-  std::string close_up_of;  ///< label or name of the picture that placed it; empty: it was chosen by hand
-  int enlarged = 0;         ///< factor of the close-up
-  double map_scale = 0;     ///< the FLIP that the brightest colour of the maps stands for
-  double native_scale = 0;  ///< the same of the techniques' own errors; 0 without any
+  plots::Window close_up;              ///< empty where the set has none
+  std::string close_up_of;             ///< label or name of the picture that placed it; empty: it was chosen by hand
+  std::string close_up_why;            ///< what it shows then
+  int enlarged = 0;                    ///< factor of the close-up
+  double map_scale = 0;                ///< the FLIP that the brightest colour of the maps stands for
+  double native_scale = 0;             ///< the same of the techniques' own errors; 0 without any
   std::string native_name, native_doc, native_unit;
 };
 
@@ -56,6 +57,6 @@ struct PictureOptions {
 
 /// Draws the pictures that the folder lacks, each in a process of its own, and everything that is derived from them. A
 /// file is kept when its recipe, scene, commit and device are those asked for.
-DrawnPictures draw_pictures(const PaperPictures&, const PictureOptions&);
+DrawnPictures draw_pictures(const plots::PictureSet&, const PictureOptions&);
 
 }  // namespace pellucid::sandbox

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/workers/progress.hpp"
 
 namespace pellucid::sandbox {
@@ -115,7 +116,7 @@ ReportTable sweep_table(const PaperOutcome& outcome) {
     table.files.push_back({sweep.name + ".db", file});
     table.commands.push_back(
         {fmt::format("Measure {} again, into a store of its own", sweep.name),
-         fmt::format("pellucid sweep run {0} --store {0}.db{1}", sweep.name, outcome.device_option)});
+         fmt::format("pellucid sweep run {} --store {}.db{}", sweep.words, sweep.name, outcome.device_option)});
     table.commands.push_back({fmt::format("Print the rows of {}", sweep.name),
                               fmt::format("pellucid results {} --format csv", sweeps::shell_word(sweep.store))});
   }
@@ -151,7 +152,7 @@ ReportTable table_block(const PaperOutcome& outcome, const TableOutcome& made) {
                {"CSV", made.path + ".csv"},
                {"LaTeX", made.path + ".tex"},
                {"JSON", made.path + ".json"}};
-  out.commands = {{"Print this table", fmt::format("pellucid table {}{}", made.table.info.name,
+  out.commands = {{"Print this table", fmt::format("pellucid table {}{}", sweeps::shell_word(made.table.info.address),
                                                    store_option(outcome, made.table.info.spec))}};
   return out;
 }
@@ -199,16 +200,46 @@ void add_native_maps(const PicturesOutcome& outcome, ReportSection& section) {
   section.blocks.emplace_back(std::move(maps));
 }
 
+// Which of the differences from the reference the metrics see.
+std::string what_differs(const DrawnPictures& set) {
+  if (set.surfaces == "forward") {
+    return "Reference and pictures take the opaque surfaces from the same forward pass, shadow maps included, so that "
+           "the "
+           "metrics see the medium alone.";
+  }
+  if (set.surfaces == "raster") {
+    return "Reference and pictures take the opaque surfaces from the same forward pass, but the reference's shadows "
+           "are "
+           "exact, so that the metrics see the medium and the shadow maps.";
+  }
+  return "The reference is traced, its surfaces and shadows too, so that the metrics see everything in which a picture "
+         "differs from ray tracing.";
+}
+
+void add_close_ups(const DrawnPictures& set, Gallery close, Gallery stretched, ReportSection& section) {
+  section.blocks.emplace_back(Heading{fmt::format("Close-up, ×{}", set.enlarged)});
+  const std::string why =
+      set.close_up_of.empty()
+          ? set.close_up_why
+          : fmt::format("the window in which the error of {} is largest on average", set.close_up_of);
+  section.blocks.emplace_back(Paragraph{fmt::format("{}×{} pixels from ({}, {}): {}.", set.close_up.width,
+                                                    set.close_up.height, set.close_up.x, set.close_up.y, why)});
+  section.blocks.emplace_back(std::move(close));
+  section.blocks.emplace_back(Paragraph{
+      "The same with more contrast: one straight line through the displayed values of all, by the reference's "
+      "own range."});
+  section.blocks.emplace_back(std::move(stretched));
+}
+
 void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
   const DrawnPictures& set = outcome.drawn;
   const std::string& folder = outcome.folder;
   section.blocks.emplace_back(Paragraph{fmt::format(
       "Scene {}, view {}{}, {}×{} pixels. {}. The metrics compare scene-linear radiance with the reference over the "
-      "whole frame; FLIP is HDR-FLIP at 67 pixels per degree. Both take the opaque surfaces from the same forward "
-      "pass, "
-      "shadow maps included, so that they see the medium alone.",
+      "whole frame; FLIP is HDR-FLIP at 67 pixels per degree. {}",
       set.scene, set.view, set.settings_text.empty() ? "" : ", " + set.settings_text, set.width, set.height,
-      set.stand_in.empty() ? set.scene_title : fmt::format("{}: {}", set.scene_title, set.stand_in))});
+      set.stand_in.empty() ? set.scene_title : fmt::format("{}: {}", set.scene_title, set.stand_in),
+      what_differs(set))});
   std::vector<const DrawnPicture*> all;
   for (const DrawnPicture& picture : set.pictures)
     all.push_back(&picture);
@@ -243,18 +274,7 @@ void add_pictures(const PicturesOutcome& outcome, ReportSection& section) {
                   set.map_scale)});
   section.blocks.emplace_back(std::move(maps));
   add_native_maps(outcome, section);
-  section.blocks.emplace_back(Heading{fmt::format("Close-up, ×{}", set.enlarged)});
-  const std::string why =
-      set.close_up_of.empty()
-          ? "a part of medium and shadow before and behind surfaces"
-          : fmt::format("the window in which the error of {} is largest on average", set.close_up_of);
-  section.blocks.emplace_back(Paragraph{fmt::format("{}×{} pixels from ({}, {}): {}.", set.close_up.width,
-                                                    set.close_up.height, set.close_up.x, set.close_up.y, why)});
-  section.blocks.emplace_back(std::move(close));
-  section.blocks.emplace_back(Paragraph{
-      "The same with more contrast: one straight line through the displayed values of all, by the reference's "
-      "own range."});
-  section.blocks.emplace_back(std::move(stretched));
+  if (set.close_up.width > 0) add_close_ups(set, std::move(close), std::move(stretched), section);
 }
 
 // The points that need a look: failed ones and those whose time did not settle.
@@ -281,9 +301,9 @@ ReportTable trouble_table(const PaperOutcome& outcome) {
 }
 
 void add_paper(const PaperOutcome& outcome, bool alone, Report& report) {
-  const std::string id(outcome.paper->name);
+  const std::string& id = outcome.paper->name;
   const std::string prefix = alone ? "" : id + ": ";
-  ReportSection run{id, alone ? "What was run" : std::string(outcome.paper->title), {}};
+  ReportSection run{id, alone ? "What was run" : outcome.paper->title, {}};
   if (outcome.preview) {
     run.blocks.emplace_back(Paragraph{
         "A preview: fewer points, fewer timed frames and in places smaller pictures than the full run, which is the "
@@ -321,13 +341,15 @@ void add_paper(const PaperOutcome& outcome, bool alone, Report& report) {
       figures.blocks.emplace_back(Paragraph{fmt::format("{}: not drawn: {}", figure.title, figure.missing), true});
       continue;
     }
-    gallery.images.push_back(
-        {.path = figure.path + ".svg",
-         .alt = fmt::format("{}: {}", figure.title, figure.doc),
-         .title = figure.title + ":",
-         .caption = figure.doc,
-         .files = {{"SVG", figure.path + ".svg"}, {"PNG", figure.path + ".png"}, {"PDF", figure.path + ".pdf"}},
-         .commands = {{"Draw it again", figure.repeat}}});
+    gallery.images.push_back({.path = figure.path + ".svg",
+                              .alt = fmt::format("{}: {}", figure.title, figure.doc),
+                              .title = figure.title + ":",
+                              .caption = figure.doc,
+                              .files = {{"SVG", figure.path + ".svg"},
+                                        {"PNG", figure.path + ".png"},
+                                        {"PDF", figure.path + ".pdf"},
+                                        {"data", figure.path + ".csv"}},
+                              .commands = {{"Draw it again", figure.repeat}}});
   }
   if (!gallery.images.empty()) figures.blocks.emplace_back(std::move(gallery));
   if (!figures.blocks.empty()) report.sections.push_back(std::move(figures));
@@ -373,7 +395,7 @@ std::size_t PaperOutcome::failed() const {
 
 Report make_report(const std::vector<PaperOutcome>& papers) {
   Report report;
-  report.title = papers.size() == 1 ? std::string(papers.front().paper->title) : "Papers, reproduced";
+  report.title = papers.size() == 1 ? papers.front().paper->title : "Papers, reproduced";
   report.lead =
       "Reproduced by Pellucid: tables, figures and pictures, measured and drawn anew, each with the command that makes "
       "it "

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "plots/report/report.hpp"
-#include "sandbox/reproduce/papers.hpp"
 #include "sandbox/reproduce/reproduce_pictures.hpp"
+#include "sweeps/papers/paper.hpp"
 #include "sweeps/tables/tables.hpp"
 #include "sweeps/workers/run.hpp"
 
@@ -16,6 +16,7 @@ namespace pellucid::sandbox {
 
 struct SweepOutcome {
   std::string name, title;
+  std::string words;  ///< what `pellucid sweep run` takes to measure it
   std::string store;  ///< path as a user would type it
   sweeps::SweepSummary summary;
   std::vector<nlohmann::json> rows;
@@ -31,13 +32,13 @@ struct TableOutcome {
 
 struct FigureOutcome {
   std::string name, title, doc;
-  std::string path;     ///< relative to the page, without extension: svg, png and pdf stand there; empty without data
+  std::string path;  ///< relative to the page, without extension: svg, png, pdf and csv stand there; empty without data
   std::string missing;  ///< why there is none
   std::string repeat;   ///< a command line that draws it alone
 };
 
 struct PicturesOutcome {
-  std::string name, title;  ///< of PaperPictures
+  std::string name, title;  ///< of PictureSet
   DrawnPictures drawn;
   std::string folder;   ///< relative to the page
   std::string missing;  ///< why there are none; empty when they are drawn
@@ -45,7 +46,7 @@ struct PicturesOutcome {
 
 /// What came of one paper.
 struct PaperOutcome {
-  const Paper* paper = nullptr;
+  sweeps::PaperPointer paper;
   bool preview = false;
   std::string folder;   ///< of its results, relative to the page
   std::string command;  ///< that made all of it

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,16 +10,20 @@
 
 #include "sweeps/measure/stopping.hpp"
 
-namespace pellucid::gl {
+namespace pellucid {
+struct BareFrameInfo;
+struct TechniqueInfo;
+namespace gl {
 class Context;
 }
+}  // namespace pellucid
 
 /// What a technique's frame costs beside the least that its texture fetches and blends could cost: a bare shader over
 /// the same pixels, timed on the same device in the same run.
 namespace pellucid::sweeps {
 
 struct BenchRequest {
-  std::string scene, view;  ///< view: empty for the first
+  std::string scene, view;  ///< empty: the technique's own scene, and the first view
   int width = 720;
   int height = 540;
   std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, as RenderSession::assign_text takes
@@ -58,23 +63,17 @@ struct BenchResult {
   std::optional<BenchReference> reference;  ///< nothing where it is not asked for, or there is none
 };
 
-/// Throws InputError for a request that cannot be met, RuntimeError when the clock gives no usable time. Needs a
-/// current GL context. `recipe` receives what was drawn: scene, view, size and every parameter with its value.
-BenchResult bench_sampling_hulls(const BenchRequest&, nlohmann::json& recipe);
+/// Throws InputError for a request that cannot be met (a technique without a bare frame too), RuntimeError when the
+/// clock gives no usable time. Needs a current GL context. `recipe` receives what was drawn: scene, view, size and
+/// every parameter with its value.
+BenchResult bench(const TechniqueInfo&, const BenchRequest&, nlohmann::json& recipe);
 
-/// The same for distance_impostors: the frame without refreshes of the maps, and the bare shader makes as many fetches
-/// as a search at most. `blends_per_pixel` is the share of pixels that show an object, `fetches_per_blend` of a mirror
-/// or metal.
-BenchResult bench_distance_impostors(const BenchRequest&, nlohmann::json& recipe);
+/// What the technique is timed against. Throws InputError with the names of those that have one.
+const BareFrameInfo& bare_frame_of(const TechniqueInfo&);
 
-/// The same for geocube: the bare shader makes as many fetches at each pixel as the search did there. `opaque` includes
-/// the entries, which both share; `blends_per_pixel` is the share of pixels that show a dielectric, `fetches_per_blend`
-/// a mean of theirs.
-BenchResult bench_geocube(const BenchRequest&, nlohmann::json& recipe);
-
-/// The hulls against VTK's GPU ray caster on the same volume and view, alone in a black world and white where it is
-/// opaque, so that nothing but the medium is drawn. VTK's sample distance is the longest at which its error against the
-/// reference is no larger than the hulls', or where there is none, that of its least error.
+/// A technique of volumes against VTK's GPU ray caster on the same volume and view, alone in a black world and white
+/// where it is opaque, so that nothing but the medium is drawn. VTK's sample distance is the longest at which its error
+/// against the reference is no larger than the hulls', or where there is none, that of its least error.
 struct BenchVtk {
   TimingSummary method, vtk;  ///< whole frames
   BenchRatio ratio;           ///< method / vtk
@@ -84,9 +83,9 @@ struct BenchVtk {
 };
 /// Throws InputError for a request that cannot be met, RuntimeError with the reason when VTK cannot draw this volume.
 /// `context` is current before and, unless it throws, after; VTK draws in one of its own on the same device.
-BenchVtk bench_against_vtk(const BenchRequest&, gl::Context& context);
+BenchVtk bench_against_vtk(const TechniqueInfo&, const BenchRequest&, gl::Context& context);
 
-/// The ratio that bench_sampling_hulls gives: of each `block` samples, median(a) − median(c) over median(b) −
+/// The ratio that bench() gives: of each `block` samples, median(a) − median(c) over median(b) −
 /// median(c); an empty `c` counts as zero. Nothing when so many denominators are not positive that the interval has no
 /// end.
 std::optional<BenchRatio> block_ratio(const std::vector<double>& a, const std::vector<double>& b,

@@ -1,13 +1,20 @@
-// Sampling hulls against VTK's volume rendering at equal error.
+// A technique of volumes against VTK's volume rendering at equal error.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include "algorithms/bare_frame.hpp"
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/technique.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
 #include "sweeps/bench/bench.hpp"
@@ -104,30 +111,29 @@ void keep_medium_alone(Scene& scene) {
     point.albedo = glm::vec3(1.0F);
 }
 
-RenderSession open(const BenchRequest& request) {
-  constexpr std::string_view kScenePrefix = "scene.";
-  Scene scene = load_scene(request.scene);
+RenderSession open(const TechniqueInfo& technique, const BenchRequest& request) {
+  Scene scene = load_scene(request.scene.empty() ? bare_frame_of(technique).scene : request.scene);
   for (const auto& [name, value] : request.settings) {
-    if (!name.starts_with(kScenePrefix)) continue;
+    const auto [owner, local] = route(name);
+    if (owner != ParameterOwner::scene) continue;
     const ParameterRef table = scene.parameters();
-    const std::string local = name.substr(kScenePrefix.size());
     const ParameterInfo* info = table.table->find(local);
     if (info == nullptr) throw unknown_parameter(local, "scene " + scene.name, table.infos());
     table.assign(local, parse_value(*info, value, "scene " + scene.name), "scene " + scene.name);
   }
   keep_medium_alone(scene);
-  RenderSession session(std::move(scene), "sampling_hulls", request.view, request.width, request.height);
+  RenderSession session(std::move(scene), technique.name, request.view, request.width, request.height);
   for (const auto& [name, value] : request.settings) {
-    if (!name.starts_with(kScenePrefix)) session.assign_text(name, value);
+    if (route(name).owner != ParameterOwner::scene) session.assign_text(name, value);
   }
   return session;
 }
 
 }  // namespace
 
-BenchVtk bench_against_vtk(const BenchRequest& request, gl::Context& context) {
+BenchVtk bench_against_vtk(const TechniqueInfo& technique, const BenchRequest& request, gl::Context& context) {
   context.make_current();
-  RenderSession session = open(request);
+  RenderSession session = open(technique, request);
   gl::PassTimer untimed;
   session.render(untimed);
   const Reference reference = render_reference(session.scene(), session.camera(), session.raster_surfaces());

@@ -2,6 +2,8 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,6 +24,19 @@ void FrameClock::draw(const Draw& subject, std::vector<double>* into) {
     take(*time);
 }
 
+gl::FrameTime FrameClock::next(const Draw& subject) {
+  for (;;) {
+    if (!due_.empty()) {
+      if (auto time = due_.size() >= kFramesInFlight ? timer_.wait() : timer_.poll()) {
+        take(*time);
+        return std::move(*time);
+      }
+    }
+    subject(timer_);
+    due_.push_back(nullptr);
+  }
+}
+
 void FrameClock::drain() {
   while (!due_.empty())
     take(*timer_.wait());
@@ -29,10 +44,12 @@ void FrameClock::drain() {
 
 void FrameClock::take(const gl::FrameTime& time) {
   assert(!due_.empty());
-  if (!std::isfinite(time.frame_ms) || time.frame_ms <= 0) {
-    throw RuntimeError(fmt::format("bench: the clock gave {} ms for a frame", time.frame_ms));
+  if (due_.front() != nullptr) {
+    if (!std::isfinite(time.frame_ms) || time.frame_ms <= 0) {
+      throw RuntimeError(fmt::format("bench: the clock gave {} ms for a frame", time.frame_ms));
+    }
+    due_.front()->push_back(time.frame_ms);
   }
-  if (due_.front() != nullptr) due_.front()->push_back(time.frame_ms);
   due_.pop_front();
 }
 

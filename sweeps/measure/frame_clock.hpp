@@ -14,16 +14,21 @@ class FrameClock {
  public:
   using Draw = std::function<void(gl::PassTimer&)>;
 
+  explicit FrameClock(gl::Detail detail = gl::Detail::frame) : timer_(detail) {}
+
   gl::Clock clock() const { return timer_.clock(); }
   /// `into` [ms]: nullptr for a frame whose time does not count. Throws RuntimeError when the clock gives no usable
   /// time.
   void draw(const Draw& subject, std::vector<double>* into);
+  /// Draws frames of `subject` until the time of one is known, and returns the oldest.
+  gl::FrameTime next(const Draw& subject);
+  /// Waits for what is still being drawn, so that it does not reach into what is timed next.
   void drain();
 
  private:
   void take(const gl::FrameTime&);
 
-  gl::PassTimer timer_{gl::Detail::frame};
+  gl::PassTimer timer_;
   std::deque<std::vector<double>*> due_;
 };
 

@@ -4,20 +4,26 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "algorithms/scene/images/picture_file.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
 #include "sweeps/measure/class_errors.hpp"
+#include "sweeps/measure/frame_clock.hpp"
 #include "sweeps/measure/stopping.hpp"
-#include "sweeps/store/provenance.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -25,7 +31,6 @@ namespace {
 constexpr std::size_t kWarmUpFrames = 64;
 constexpr double kWarmUpShare = 0.25;  ///< of max_seconds
 constexpr int kPassFrames = 5;
-constexpr int kFramesInFlight = 8;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -44,48 +49,6 @@ std::size_t peak_rss_bytes() {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
-/// Draws frames one behind the other without waiting for the GPU, and hands on their times in order.
-class FrameTimes {
- public:
-  FrameTimes(RenderSession& session, gl::Detail detail) : session_(session), timer_(detail) {}
-  gl::Clock clock() const { return timer_.clock(); }
-
-  /// Draws frames until one's time is known.
-  gl::FrameTime next() {
-    for (;;) {
-      if (in_flight_ > 0) {
-        if (auto time = in_flight_ >= kFramesInFlight ? timer_.wait() : timer_.poll()) {
-          --in_flight_;
-          return std::move(*time);
-        }
-      }
-      session_.render(timer_);
-      ++in_flight_;
-    }
-  }
-  /// Waits for what is still being drawn, so that it does not reach into what is timed next.
-  void drain() {
-    while (in_flight_ > 0 && timer_.wait())
-      --in_flight_;
-  }
-
- private:
-  RenderSession& session_;
-  gl::PassTimer timer_;
-  int in_flight_ = 0;
-};
-
-void check_finite(const Image& image) {
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    if (std::isfinite(image.pixels[i])) continue;
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const std::size_t pixel = i / channels;
-    const auto width = static_cast<std::size_t>(image.width);
-    throw RuntimeError(fmt::format("the frame has a value that is not finite ({}) at pixel ({}, {}), channel {}",
-                                   image.pixels[i], pixel % width, pixel / width, i % channels));
-  }
 }
 
 }  // namespace
@@ -113,26 +76,27 @@ void Measurer::open_session(const Point& point) {
   if (camera.width != point.size.width || camera.height != point.size.height) {
     session_->resize(point.size.width, point.size.height);
   }
-  session_->set_view(session_->scene().find_view(point.view));
+  session_->set_view(view_of(session_->scene(), point.view));
   if (const double seconds = session_->prepare(); seconds > 0) prepare_s_ = seconds;
 }
 
 void Measurer::time_frames(const Point& point, Measurement& result) {
-  FrameTimes frames(*session_, gl::Detail::frame);
+  FrameClock clock(gl::Detail::frame);
+  const FrameClock::Draw frame = [&](gl::PassTimer& timer) { session_->render(timer); };
   WarmUp warm_up(kWarmUpFrames, kWarmUpShare * point.timing.max_seconds);
   while (!warm_up.done())
-    warm_up.add(frames.next().frame_ms);
+    warm_up.add(clock.next(frame).frame_ms);
 
   StoppingRule rule(point.timing);
   result.row["timed_unix_s"] = unix_now_s();
   const auto start = std::chrono::steady_clock::now();
   while (rule.verdict() == Verdict::more) {
-    const double frame_ms = frames.next().frame_ms;
+    const double frame_ms = clock.next(frame).frame_ms;
     if (!std::isfinite(frame_ms) || frame_ms < 0)
       throw RuntimeError(fmt::format("the clock gave {} ms for a frame", frame_ms));
     rule.add(frame_ms, seconds_since(start));
   }
-  frames.drain();
+  clock.drain();
 
   const TimingSummary summary = summarise(rule.samples_ms());
   nlohmann::json& row = result.row;
@@ -146,18 +110,19 @@ void Measurer::time_frames(const Point& point, Measurement& result) {
   row["frames"] = rule.samples_ms().size();
   row["warmup_frames"] = warm_up.frames();
   row["timing"] = rule.verdict() == Verdict::converged ? "converged" : "unconverged";
-  row["clock"] = gl::name(frames.clock());
+  row["clock"] = gl::name(clock.clock());
   result.frame_ms_samples = rule.samples_ms();
 }
 
 void Measurer::time_passes(Measurement& result) {
-  FrameTimes frames(*session_, gl::Detail::passes);
+  FrameClock clock(gl::Detail::passes);
+  const FrameClock::Draw frame = [&](gl::PassTimer& timer) { session_->render(timer); };
   std::map<std::string, std::vector<double>> samples;
   for (int i = 0; i < kPassFrames; ++i) {
-    for (const auto& [name, ms] : frames.next().pass_ms)
+    for (const auto& [name, ms] : clock.next(frame).pass_ms)
       samples[name].push_back(ms);
   }
-  frames.drain();
+  clock.drain();
   nlohmann::json passes = nlohmann::json::object();
   for (auto& [name, values] : samples) {
     std::sort(values.begin(), values.end());
@@ -168,7 +133,9 @@ void Measurer::time_passes(Measurement& result) {
 
 void Measurer::compare(const Point& point, const std::filesystem::path& references, Measurement& result) {
   const Image color = session_->read_color();
-  check_finite(color);
+  require_finite(color, "the frame");
+  if (session_->parameters().value("frame.format", "") == "half")
+    result.row["saturated_pixels"] = saturated_pixels(color);
   session_->technique().native_errors(result.row);
   if (point.metrics.empty()) return;
   if (!references_ || references_->folder() != references) references_ = std::make_unique<ReferenceCache>(references);

@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <cstdio>
+#include <exception>
+#include <iterator>
 #include <span>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/scene/files/hash.hpp"
 #include "gl/error.hpp"
 #include "sweeps/measure/reference_methods.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -70,7 +76,7 @@ std::string memory_key_of(RenderSession& session, const Point& point) {
   for (const std::string& metric : point.metrics)
     key += " " + metric;
   for (const auto& [name, value] : point.parameters) {
-    if (name.starts_with("shadow.")) key += fmt::format(" {}={}", name, to_text(value));
+    if (route(name).owner == ParameterOwner::shadow) key += fmt::format(" {}={}", name, to_text(value));
   }
   return key;
 }
@@ -183,6 +189,7 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
     if (traced_surfaces) {
       hash.add(fmt::format("rays {} {} {} {} {}", settings.samples, settings.reflections, settings.cut,
                            settings.caustics, settings.caustics ? settings.photons : 0));
+      if (settings.refract_light) hash.add("refract_light");
     } else {
       hash.add(bytes_of(surfaces().radiance.pixels));
       hash.add(std::as_bytes(std::span(surfaces().distance_m)));

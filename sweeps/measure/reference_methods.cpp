@@ -1,23 +1,21 @@
 #include "sweeps/measure/reference_methods.hpp"
 
 #include <cassert>
+#include <cstdint>
+#include <string_view>
 
+#include "algorithms/parameter_names.hpp"
 #include "gl/timer.hpp"
 #include "sweeps/metrics/pixels.hpp"
 
 namespace pellucid::sweeps {
-namespace {
-
-constexpr std::string_view kScenePrefix = "scene.";
-constexpr std::string_view kShadowPrefix = "shadow.";
-
-}  // namespace
 
 Scene load_again(const std::string& scene, const std::map<std::string, Value>& parameters) {
   Scene loaded = load_scene(scene);
   const ParameterRef table = loaded.parameters();
   for (const auto& [name, value] : parameters) {
-    if (name.starts_with(kScenePrefix)) table.assign(name.substr(kScenePrefix.size()), value, "scene " + loaded.name);
+    const ParameterName routed = route(name);
+    if (routed.owner == ParameterOwner::scene) table.assign(routed.local, value, "scene " + loaded.name);
   }
   return loaded;
 }
@@ -39,7 +37,7 @@ Image draw_slices(const std::string& scene, const std::map<std::string, Value>& 
   session.assign("slices", std::int64_t{settings.slices});
   session.assign("frame.format", std::string(name(settings.format)));
   for (const auto& [name, value] : parameters) {
-    if (name.starts_with(kShadowPrefix)) session.assign(name, value);
+    if (route(name).owner == ParameterOwner::shadow) session.assign(name, value);
   }
   gl::PassTimer untimed;
   session.render(untimed);

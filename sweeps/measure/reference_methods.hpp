@@ -6,7 +6,7 @@
 
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/render_session.hpp"
-#include "sweeps/measure/reference_settings.hpp"
+#include "sweeps/spec/reference_settings.hpp"
 
 /// What a reference is made of besides the tracer: surfaces, the picture of many slices, the shadows' region. Needs a
 /// current GL context where a session is drawn.

@@ -1,12 +1,12 @@
 #include "sweeps/spec/catalogue.hpp"
 
 #include <map>
+#include <utility>
 
 #include "algorithms/reference/reference.hpp"
-#include "algorithms/scene/files/hash.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
-#include "gl/resources.hpp"
+#include "algorithms/technique_code.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -25,17 +25,7 @@ class Installed final : public Catalogue {
     return {infos.begin(), infos.end()};
   }
 
-  std::string shader_hash(std::string_view technique) const override {
-    Sha256 hash;
-    for (const std::string& folder :
-         {std::string("algorithms/") + std::string(technique) + "/", std::string("algorithms/shaders/")}) {
-      for (const std::string& name : list_resources(folder, ".glsl")) {
-        hash.add(name);
-        hash.add(find_resource(name).value_or(std::string{}));  // an override of $PELLUCID_SHADER_PATH counts
-      }
-    }
-    return hash.hex();
-  }
+  std::string code_hash(std::string_view technique) const override { return pellucid::code_hash(technique); }
 
   const SceneFacts& scene(const std::string& name) const override {
     const auto known = scenes_.find(name);

@@ -24,8 +24,8 @@ class Catalogue {
   virtual std::vector<std::string> techniques() const = 0;
   /// Throws InputError with the nearest name, as do the next two.
   virtual std::vector<ParameterInfo> technique_parameters(std::string_view technique) const = 0;
-  /// SHA-256 (hex) of every shader source that the technique may compile.
-  virtual std::string shader_hash(std::string_view technique) const = 0;
+  /// SHA-256 (hex) of the technique's code (algorithms/technique_code.hpp).
+  virtual std::string code_hash(std::string_view technique) const = 0;
   /// `scene`: a listed name or a path ending in .toml.
   virtual const SceneFacts& scene(const std::string& scene) const = 0;
 };

@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <random>
+#include <string_view>
 #include <unordered_map>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/files/hash.hpp"
 #include "sweeps/spec/constraint.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/spec/spec_reader.hpp"
-#include "sweeps/store/provenance.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -35,7 +39,7 @@ std::string hash_of(const Point& point) {
                         {"parameters", parameters},
                         {"scene", point.scene},
                         {"scene_hash", point.scene_hash},
-                        {"shader_hash", point.shader_hash},
+                        {"code_hash", point.code_hash},
                         {"view", point.view},
                         {"size", {point.size.width, point.size.height}},
                         {"metrics", point.metrics}};
@@ -188,7 +192,7 @@ class Expander {
       }
     }
     point.scene_hash = facts.content_hash;
-    point.shader_hash = shader_hash(technique);
+    point.code_hash = code_hash(technique);
     for (const ParameterInfo& i : table_)
       point.parameters[i.name] = i.default_value;
 
@@ -220,9 +224,9 @@ class Expander {
     plan_.points.push_back(std::move(point));
   }
 
-  const std::string& shader_hash(const std::string& technique) {
-    const auto [at, is_new] = shader_hashes_.try_emplace(technique);
-    if (is_new) at->second = catalogue_.shader_hash(technique);
+  const std::string& code_hash(const std::string& technique) {
+    const auto [at, is_new] = code_hashes_.try_emplace(technique);
+    if (is_new) at->second = catalogue_.code_hash(technique);
     return at->second;
   }
 
@@ -232,7 +236,7 @@ class Expander {
     s.precompute = fmt::format("{} {} {}x{}", point.technique, point.view, point.size.width, point.size.height);
     for (const ParameterInfo& i : table_) {
       const std::string text = fmt::format(" {}={}", i.name, to_text(point.parameters.at(i.name)));
-      if (i.when == Change::precompute || i.name.starts_with("scene.")) s.precompute += text;
+      if (i.when == Change::precompute || route(i.name).owner == ParameterOwner::scene) s.precompute += text;
       if (i.when == Change::program) s.program += text;
     }
     return s;
@@ -274,7 +278,7 @@ class Expander {
   std::vector<Expression> constraints_;
   std::vector<Sharing> sharing_;
   std::unordered_map<std::string, std::size_t> index_;
-  std::map<std::string, std::string> shader_hashes_;
+  std::map<std::string, std::string> code_hashes_;
   std::mt19937_64 random_{0x70656c6c75636964};  // "pellucid"
 };
 

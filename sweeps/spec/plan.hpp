@@ -22,7 +22,7 @@ struct Point {
   TimingLimits timing;
   ReferenceSettings reference;
   std::string scene_hash;  ///< of the scene at its defaults
-  std::string shader_hash;
+  std::string code_hash;
 };
 
 /// A point's place in a block. Two blocks may hold the same point; it is measured once.

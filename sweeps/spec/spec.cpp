@@ -4,14 +4,19 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/view_text.hpp"
 #include "gl/error.hpp"
 #include "gl/resources.hpp"
 #include "sweeps/metrics/metrics.hpp"
+#include "sweeps/spec/preview.hpp"
 #include "sweeps/spec/spec_reader.hpp"
 
 namespace pellucid::sweeps {
@@ -19,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMaxSpecBytes = 1U << 20;
 const std::vector<std::string> kDefaultMetrics{"mse", "rmse", "psnr", "ssim", "flip"};
-constexpr std::string_view kPapers = "sweeps/papers/";
+constexpr std::string_view kPreview = "_preview";
 
 void read_timing(const SpecReader& read, const toml::table& parent, TimingLimits& limits) {
   const toml::table* table = read.table(parent, "timing");
@@ -42,7 +47,7 @@ void read_reference(const SpecReader& read, const toml::table& parent, Reference
   if (table == nullptr) return;
   read.allow(*table,
              {"method", "slices", "format", "surfaces", "tolerance", "max_steps", "shadow_share", "samples",
-              "reflections", "cut", "caustics", "photons"},
+              "reflections", "cut", "caustics", "refract_light", "photons"},
              "reference");
   std::string text;
   if (read.text(*table, "method", text)) {
@@ -73,6 +78,7 @@ void read_reference(const SpecReader& read, const toml::table& parent, Reference
   read.integer(*table, "reflections", 0, 1024, settings.reflections);
   read.real(*table, "cut", 0, 1, settings.cut);
   read.boolean(*table, "caustics", settings.caustics);
+  read.boolean(*table, "refract_light", settings.refract_light);
   read.integer(*table, "photons", 1024, 1 << 28, settings.photons);
 }
 
@@ -100,7 +106,7 @@ struct Owners {
   };
   std::vector<Owner> owners_of(const std::string& name) const {
     std::vector<Owner> owners;
-    if (name.starts_with("scene.")) {
+    if (route(name).owner == ParameterOwner::scene) {
       for (const std::string& scene : block.scenes)
         owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
     } else if (const auto common = std::find_if(
@@ -204,6 +210,20 @@ void read_parameters(const SpecReader& read, const toml::table& table, const Cat
   }
 }
 
+// A view's name, or a camera as text. That is checked as far as it goes without the scene's own numbers.
+void read_view(const SpecReader& read, const SpecReader::Text& view, const std::string& scene,
+               const std::vector<std::string>& names) {
+  if (!is_view_text(view.value)) {
+    read.one_of(*view.node, view.value, names, fmt::format("view of scene {}", scene));
+    return;
+  }
+  Scene stand_in;
+  stand_in.name = scene;
+  for (const std::string& name : names)
+    stand_in.views.emplace_back().name = name;
+  read.at(*view.node, [&] { parse_view_text(view.value, stand_in); });
+}
+
 void read_places(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
   for (const SpecReader::Text& technique : read.required_texts(table, "techniques", block.at)) {
     read.at(*technique.node, [&] { catalogue.technique_parameters(technique.value); });
@@ -215,9 +235,8 @@ void read_places(const SpecReader& read, const toml::table& table, const Catalog
     block.scenes.push_back(resolved);
   }
   for (const SpecReader::Text& view : read.texts(table, "views", false)) {
-    for (const std::string& scene : block.scenes) {
-      read.one_of(*view.node, view.value, catalogue.scene(scene).views, fmt::format("view of scene {}", scene));
-    }
+    for (const std::string& scene : block.scenes)
+      read_view(read, view, scene, catalogue.scene(scene).views);
     block.views.push_back(view.value);
   }
   for (const SpecReader::Text& size : read.texts(table, "sizes", false))
@@ -257,21 +276,27 @@ RunBlock read_block(const SpecReader& read, const toml::table& table, const Cata
   return block;
 }
 
-}  // namespace
+/// Name and resource of each spec that a technique's folder holds, sorted by name.
+std::map<std::string, std::string> embedded_specs() {
+  std::map<std::string, std::string> found;
+  for (const std::string& resource : list_resources("algorithms/", ".toml")) {
+    const std::filesystem::path path(resource);
+    if (path.parent_path().filename() == "sweeps") found.emplace(path.stem().string(), resource);
+  }
+  return found;
+}
 
-Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& catalogue) {
-  if (text.size() > kMaxSpecBytes) throw InputError(fmt::format("{}: a spec may have {} bytes", source, kMaxSpecBytes));
-  toml::table root;
+toml::table parse_tree(std::string_view text, const std::string& source) {
   try {
-    root = toml::parse(text, source);
+    return toml::parse(text, source);
   } catch (const toml::parse_error& e) {
     throw InputError(
         fmt::format("{}:{}:{}: {}", source, e.source().begin.line, e.source().begin.column, e.description()));
   }
-  const SpecReader read(source);
+}
+
+Spec read_spec(const SpecReader& read, const toml::table& root, const Catalogue& catalogue) {
   Spec spec;
-  spec.source = source;
-  spec.text = text;
   read.allow(root, {"name", "title", "description", "metrics", "timeout_s", "timing", "reference", "run"}, "the spec");
   spec.name = read.identifier(root, "name", {1, 1});
   read.text(root, "title", spec.title);
@@ -305,10 +330,38 @@ Spec parse_spec(std::string_view text, const std::string& source, const Catalogu
   return spec;
 }
 
-Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue) {
+}  // namespace
+
+Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& catalogue, Extent extent) {
+  if (text.size() > kMaxSpecBytes) throw InputError(fmt::format("{}: a spec may have {} bytes", source, kMaxSpecBytes));
+  const SpecReader read(source);
+  const auto parse = [&] { return parse_tree(text, source); };
+  toml::table root = parse();
+  Spec spec;
+  if (extent == Extent::preview) {
+    spec = read_spec(read, preview_of(read, parse), catalogue);  // alone: the full spec may need assets
+  } else {
+    // A mistake in the preview shows at once, too.
+    if (root.contains("preview")) read_spec(read, preview_of(read, parse), catalogue);
+    root.erase("preview");
+    spec = read_spec(read, root, catalogue);
+  }
+  spec.source = source;
+  spec.text = text;
+  return spec;
+}
+
+Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue, Extent extent) {
   if (!path_or_name.ends_with(".toml")) {
-    const std::string resource = fmt::format("{}{}.toml", kPapers, path_or_name);
-    if (const auto text = find_resource(resource)) return parse_spec(*text, resource, catalogue);
+    const bool named_preview = path_or_name.ends_with(kPreview);
+    const std::string_view base =
+        std::string_view(path_or_name).substr(0, path_or_name.size() - (named_preview ? kPreview.size() : 0));
+    for (const auto& [name, resource] : embedded_specs()) {
+      if (name == path_or_name) return parse_spec(*find_resource(resource), resource, catalogue, extent);
+      if (named_preview && name == base) {
+        return parse_spec(*find_resource(resource), resource, catalogue, Extent::preview);
+      }
+    }
     const std::vector<std::string> names = list_specs();
     const std::string near = nearest_name(path_or_name, names);
     throw InputError(fmt::format("no spec named '{}'; {} (a file's name ends in .toml)", path_or_name,
@@ -325,13 +378,15 @@ Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue) {
   std::ifstream file(path_or_name, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file) throw InputError(fmt::format("{}: cannot be read", path_or_name));
-  return parse_spec(text, path_or_name, catalogue);
+  return parse_spec(text, path_or_name, catalogue, extent);
 }
 
 std::vector<std::string> list_specs() {
   std::vector<std::string> names;
-  for (const std::string& resource : list_resources(kPapers, ".toml")) {
-    names.push_back(resource.substr(kPapers.size(), resource.size() - kPapers.size() - 5));
+  for (const auto& [name, resource] : embedded_specs()) {
+    names.push_back(name);
+    if (parse_tree(*find_resource(resource), resource).contains("preview"))
+      names.push_back(name + std::string(kPreview));
   }
   return names;
 }

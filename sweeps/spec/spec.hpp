@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "algorithms/parameters.hpp"
-#include "sweeps/measure/reference_settings.hpp"
 #include "sweeps/spec/catalogue.hpp"
+#include "sweeps/spec/reference_settings.hpp"
 
 /// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the catalogue.
 namespace pellucid::sweeps {
@@ -80,13 +80,19 @@ struct Spec {
   std::vector<RunBlock> blocks;
 };
 
-/// Throws InputError "source:line:column: …" for the first thing wrong.
-Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& = installed_catalogue());
+/// How much of a spec is wanted: all of it, or what its [preview] leaves of it, whose name is NAME_preview.
+enum class Extent { full, preview };
 
-/// A path ending in .toml, or the name of an embedded spec (sweeps/papers/NAME.toml).
-Spec load_spec(const std::string& path_or_name, const Catalogue& = installed_catalogue());
+/// Reads both the spec and its preview, and returns the one that is wanted. Throws InputError "source:line:column: …"
+/// for the first thing wrong, and for a preview of a spec that has none.
+Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& = installed_catalogue(),
+                Extent = Extent::full);
 
-/// Names of the embedded specs, sorted.
+/// A path ending in .toml, or the name of an embedded spec (algorithms/TECHNIQUE/sweeps/NAME.toml); NAME_preview is its
+/// preview.
+Spec load_spec(const std::string& path_or_name, const Catalogue& = installed_catalogue(), Extent = Extent::full);
+
+/// Names of the embedded specs, sorted, each followed by that of its preview.
 std::vector<std::string> list_specs();
 
 }  // namespace pellucid::sweeps

@@ -1,7 +1,9 @@
 #include "sweeps/store/csv.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -45,9 +47,9 @@ const Names kReference{"reference_method",
                        "reference_lost_weight_mean",
                        "reference_trace_s"};
 constexpr std::string_view kShadow = "_shadow";
-const Names kProvenance{"gpu_bytes",   "peak_rss_bytes", "device",      "driver",      "commit",
-                        "dirty",       "scene_hash",     "shader_hash", "started_utc", "timed_unix_s",
-                        "done_unix_s", "wall_s",         "argv",        "repeat",      "frame_ms_samples"};
+const Names kProvenance{"gpu_bytes",  "peak_rss_bytes", "device",      "driver",          "commit",       "dirty",
+                        "scene_hash", "code_hash",      "shader_hash", "started_utc",     "timed_unix_s", "done_unix_s",
+                        "wall_s",     "argv",           "repeat",      "frame_ms_samples"};
 constexpr std::string_view kPasses = "pass_ms.";
 
 /// A row with its objects opened: `pass_ms.fog`.

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <map>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -139,6 +142,10 @@ struct Store::State {
 };
 
 Store::Store(const std::filesystem::path& path, Access access) {
+  // SQLite's own names for stores that are gone when they are closed.
+  if (const std::string name = path.string(); name.empty() || name == ":memory:" || name.starts_with("file:"))
+    throw InputError(
+        fmt::format("store '{}' would forget its rows; give a file's name (./{} for one called so)", name, name));
   if (access == Access::write) {
     std::error_code error;
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -221,6 +228,8 @@ std::vector<StoredPoint> Store::points() const {
     point.id = statement.text(0);
     point.failed = statement.integer(1) != 0;
     const nlohmann::json row = state_->parse_row(statement.text(2), point.id);
+    point.technique = row.value("technique", "");
+    point.code_hash = row.value("code_hash", "");
     point.device = row.value("device", "");
     point.driver = row.value("driver", "");
     point.commit = row.value("commit", "");

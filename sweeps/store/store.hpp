@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -36,6 +37,7 @@ struct BlockStatus {
 struct StoredPoint {
   std::string id;
   bool failed = false;
+  std::string technique, code_hash;    ///< the hash is empty in rows of versions that did not know it
   std::string device, driver, commit;  ///< empty for a point that failed before its worker said hello
   double wall_s = 0;
 };

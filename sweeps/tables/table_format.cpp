@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
-#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -85,112 +84,6 @@ std::string csv(const Table& table) {
   return out;
 }
 
-/// The next code point, with its bytes taken off the front of `text`; U+FFFD for a byte that begins none.
-char32_t take_code_point(std::string_view& text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80            ? 1
-                             : (first >> 5U) == 0x6  ? 2
-                             : (first >> 4U) == 0xE  ? 3
-                             : (first >> 3U) == 0x1E ? 4
-                                                     : 0;
-  bool good = length > 0 && length <= text.size();
-  char32_t code = length == 1 ? first : length > 0 ? first & (0x7FU >> length) : 0;
-  for (std::size_t i = 1; good && i < length; ++i) {
-    good = (byte(i) & 0xC0U) == 0x80U;
-    code = (code << 6U) | (byte(i) & 0x3FU);
-  }
-  text.remove_prefix(good ? length : 1);
-  return good ? code : U'\uFFFD';
-}
-
-/// For text mode of any LaTeX engine with no package but booktabs. Characters that pdfLaTeX has no glyph for in its own
-/// fonts stay readable by their number.
-std::string escape_latex(std::string_view text) {
-  static const std::map<char32_t, std::string> special{{U'&', R"(\&)"},
-                                                       {U'%', R"(\%)"},
-                                                       {U'$', R"(\$)"},
-                                                       {U'#', R"(\#)"},
-                                                       {U'_', R"(\_)"},
-                                                       {U'{', R"(\{)"},
-                                                       {U'}', R"(\})"},
-                                                       {U'~', R"(\textasciitilde{})"},
-                                                       {U'^', R"(\textasciicircum{})"},
-                                                       {U'\\', R"(\textbackslash{})"},
-                                                       {U'<', R"($<$)"},
-                                                       {U'>', R"($>$)"},
-                                                       {U'|', R"($|$)"},
-                                                       {U'"', "''"},
-                                                       {U'\n', " "},
-                                                       {U'\r', " "},
-                                                       {U'\t', " "},
-                                                       {U'×', R"($\times$)"},
-                                                       {U'±', R"($\pm$)"},
-                                                       {U'·', R"($\cdot$)"},
-                                                       {U'†', R"($^\dagger$)"},
-                                                       {U'–', "--"},
-                                                       {U'—', "---"},
-                                                       {U'−', "$-$"},
-                                                       {U'…', R"(\dots{})"},
-                                                       {U'≤', R"($\leq$)"},
-                                                       {U'≥', R"($\geq$)"},
-                                                       {U'→', R"($\rightarrow$)"},
-                                                       {U'°', R"($^\circ$)"},
-                                                       {U'²', "$^2$"},
-                                                       {U'³', "$^3$"},
-                                                       {U'µ', R"($\mu$)"},
-                                                       {U'®', R"(\textregistered{})"},
-                                                       {U'™', R"(\texttrademark{})"},
-                                                       {U'‘', "`"},
-                                                       {U'’', "'"},
-                                                       {U'“', "``"},
-                                                       {U'”', "''"},
-                                                       {U'\u00A0', "~"}};
-  std::string out;
-  while (!text.empty()) {
-    const std::string_view before = text;
-    const char32_t code = take_code_point(text);
-    if (const auto found = special.find(code); found != special.end()) {
-      out += found->second;
-    } else if ((code >= 0x20 && code < 0x7F) || (code >= 0xC0 && code < 0x180)) {
-      out += before.substr(0, before.size() - text.size());
-    } else {
-      out += fmt::format("[U+{:04X}]", static_cast<unsigned>(code));
-    }
-  }
-  return out;
-}
-
-std::string latex(const Table& table) {
-  const std::size_t count = table.rows.front().cells.size();
-  std::string out = fmt::format(
-      "% {} of Pellucid; needs \\usepackage{{booktabs}}\n"
-      "\\begin{{table}}\n  \\centering\n  \\caption{{{} ({}).}}\n  \\label{{tab:{}}}\n  "
-      "\\small\\setlength{{\\tabcolsep}}{{3pt}}\n  \\begin{{tabular}}{{l{}}}\n"
-      "    \\toprule\n",
-      table.info.name, escape_latex(table.info.title), escape_latex(table.info.source), table.info.name,
-      std::string(count, 'r'));
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const TableRow& row = table.rows[i];
-    if (i == table.heading_rows) out += "    \\midrule\n";
-    if ((row.in & TableRow::latex) == 0) continue;
-    // After a line's end, a bracket or a star would be read as an argument of it.
-    const bool argument = row.label.starts_with('[') || row.label.starts_with('*');
-    out += fmt::format("    {}{}", argument ? "{}" : "", escape_latex(row.label));
-    for (const TableCell& cell : row.cells)
-      out += fmt::format(" & {}", escape_latex(cell.text));
-    out += " \\\\\n";
-  }
-  out += "    \\bottomrule\n  \\end{tabular}\n";
-  if (!table.notes.empty()) {
-    out += "  \\par\\smallskip\n  \\begin{minipage}{0.95\\linewidth}\n    \\footnotesize\\raggedright\n";
-    for (const std::string& note : table.notes)
-      out += fmt::format("    {}\\par\n", escape_latex(note));
-    out += "  \\end{minipage}\n";
-  }
-  return out + "\\end{table}\n";
-}
-
 std::string json_list(const Table& table) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const TableRecord& record : table.records) {
@@ -216,7 +109,7 @@ TableFormat parse_table_format(std::string_view name) {
   throw InputError(fmt::format("unknown format '{}'; a table comes as md, csv, latex or json", name));
 }
 
-std::string format_table(const Table& table, TableFormat format) {
+std::string format_table(const Table& table, TableFormat format, const LatexOptions& latex) {
   assert(!table.rows.empty());
   switch (format) {
     case TableFormat::markdown:
@@ -224,7 +117,7 @@ std::string format_table(const Table& table, TableFormat format) {
     case TableFormat::csv:
       return csv(table);
     case TableFormat::latex:
-      return latex(table);
+      return format_latex(table, latex);
     case TableFormat::json:
       break;
   }

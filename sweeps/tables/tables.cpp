@@ -6,72 +6,83 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/tables/table_rows.hpp"
+#include "sweeps/store/rows.hpp"
+#include "sweeps/tables/table_fill.hpp"
+#include "sweeps/tables/table_spec.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-using Make = Table (*)(const TableInfo&, const ChosenRows&);
+using nlohmann::json;
 
-struct Entry {
-  TableInfo info;
-  Make make;
-};
-
-// One line for each table.
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{sampling_hulls_table1_info(), &sampling_hulls_table1},
-                                      {sampling_hulls_figure_info(8), &sampling_hulls_fig8},
-                                      {sampling_hulls_figure_info(9), &sampling_hulls_fig9},
-                                      {sampling_hulls_figure_info(10), &sampling_hulls_fig10},
-                                      {sampling_hulls_figure_info(11), &sampling_hulls_fig11},
-                                      {sampling_hulls_equal_info(), &sampling_hulls_equal},
-                                      {sampling_hulls_shadows_info(), &sampling_hulls_shadows},
-                                      {sampling_hulls_references_info(), &sampling_hulls_references},
-                                      {distance_impostors_figure_info(5), &distance_impostors_fig5},
-                                      {distance_impostors_figure_info(6), &distance_impostors_fig6},
-                                      {distance_impostors_figure_info(7), &distance_impostors_fig7},
-                                      {distance_impostors_rates_info(), &distance_impostors_rates},
-                                      {geocube_table2_info(), &geocube_table2},
-                                      {geocube_fig16_info(), &geocube_fig16},
-                                      {geocube_bounds_info(), &geocube_bounds}};
-  return all;
+/// Those of a device or driver with this in its name, and those that failed before they had one.
+RowPointers of_device(const TableInfo& info, const RowPointers& rows, std::string_view device) {
+  RowPointers kept;
+  bool any = false;
+  for (const json* row : rows) {
+    const std::string name = machine(*row);
+    const bool wanted = name.find(device) != std::string::npos;
+    any = any || wanted;
+    if (wanted || name.empty()) kept.push_back(row);
+  }
+  if (!any) {
+    throw InputError(fmt::format("no row of {} is of a device or driver with '{}' in its name; there are: '{}'",
+                                 info.spec, device, fmt::join(machines(rows), "', '")));
+  }
+  return kept;
 }
 
-const Entry& find_entry(std::string_view name) {
-  std::vector<std::string> names;
-  std::vector<const Entry*> short_named;  // "fig8" for "sampling_hulls.fig8"
-  for (const Entry& entry : entries()) {
-    if (entry.info.name == name) return entry;
-    names.push_back(entry.info.name);
-    if (entry.info.name.ends_with(fmt::format(".{}", name))) short_named.push_back(&entry);
+SweepRows choose_rows(const TableInfo& info, const std::vector<json>& rows, std::string_view device) {
+  SweepRows chosen = rows_of_sweep(rows, info.spec);
+  if (chosen.rows.empty()) return chosen;
+  if (!device.empty()) chosen.rows = of_device(info, chosen.rows, device);
+  if (const auto names = machines(chosen.rows); names.size() > 1) {
+    throw InputError(
+        fmt::format("{} has rows of {} devices or drivers, which are never pooled: '{}'; choose one with "
+                    "--device-name",
+                    chosen.sweep, names.size(), fmt::join(names, "', '")));
   }
-  if (short_named.size() == 1) return *short_named.front();
-  if (short_named.size() > 1) {
-    throw InputError(fmt::format("'{}' is a table of several papers: {}, {}{}", name, short_named[0]->info.name,
-                                 short_named[1]->info.name, short_named.size() > 2 ? ", …" : ""));
-  }
-  const std::string near = nearest_name(name, names);
-  throw InputError(near.empty() ? fmt::format("no table named '{}'; there are: {}", name, fmt::join(names, ", "))
-                                : fmt::format("no table named '{}'; did you mean '{}'?", name, near));
+  return chosen;
 }
 
 }  // namespace
 
 std::vector<TableInfo> tables() {
   std::vector<TableInfo> infos;
-  for (const Entry& entry : entries())
-    infos.push_back(entry.info);
+  for (const PaperEntry& entry : built_in_entries("tables"))
+    infos.push_back(read_table_spec(entry).info);
+  return infos;
+}
+
+std::vector<TableInfo> tables_of(const PaperPointer& paper) {
+  std::vector<TableInfo> infos;
+  for (const std::string& name : entry_names(*paper, "tables"))
+    infos.push_back(read_table_spec({paper, name}).info);
   return infos;
 }
 
 TableInfo find_table(std::string_view name) {
-  return find_entry(name).info;
+  return read_table_spec(find_entry(name, "tables", "table")).info;
 }
 
-Table make_table(std::string_view name, const std::vector<nlohmann::json>& rows, std::string_view device) {
-  const Entry& entry = find_entry(name);
-  return entry.make(entry.info, choose_rows(entry.info, rows, device));
+Table make_table(std::string_view name, const std::vector<json>& rows, std::string_view device) {
+  return make_table(find_entry(name, "tables", "table"), rows, device);
+}
+
+Table make_table(const PaperEntry& entry, const std::vector<json>& rows, std::string_view device) {
+  const TableSpec spec = read_table_spec(entry);
+  const SweepRows chosen = choose_rows(spec.info, rows, device);
+  const std::vector<FilledGroup> groups = fill_groups(spec, chosen);
+  const bool ours =
+      std::any_of(groups.begin(), groups.end(), [](const FilledGroup& group) { return !group.used.empty(); });
+  Table table;
+  table.info = spec.info;
+  table.heading_rows = spec.heading_rows;
+  table.sweep = ours ? chosen.sweep : "";
+  table.rows = lay_out(spec, groups);
+  table.records = make_records(spec, groups, table.sweep);
+  table.notes = make_notes(spec, groups, table.sweep);
+  return table;
 }
 
 }  // namespace pellucid::sweeps

@@ -5,17 +5,18 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/store/provenance.hpp"
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/stop_signals.hpp"
 #include "sweeps/workers/worker_client.hpp"
-#include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -42,6 +43,8 @@ std::string outcome_text(const json& row) {
   if (row.contains("frame_ms_median")) {
     text = fmt::format("{:.3g} ms", row.at("frame_ms_median").get<double>());
     if (row.value("timing", "") == "unconverged") text += " (unconverged)";
+    if (const auto saturated = row.value("saturated_pixels", 0); saturated > 0)
+      text += fmt::format(" ({} pixels saturate 16-bit floats)", saturated);
   }
   for (const char* metric : {"flip_mean", "rmse"}) {
     if (row.contains(metric))
@@ -231,7 +234,7 @@ class Runner {
     row["driver"] = client_.hello().driver;
     if (!row.contains("clock")) row["clock"] = client_.hello().clock;
     if (!row.contains("scene_hash")) row["scene_hash"] = point.scene_hash;
-    row["shader_hash"] = point.shader_hash;
+    row["code_hash"] = point.code_hash;
     row["commit"] = kCommit;
     row["dirty"] = kDirty;
     row["argv"] = argv_;

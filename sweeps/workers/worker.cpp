@@ -3,8 +3,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <exception>
 #include <iostream>
 #include <mutex>
+#include <string>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,6 +18,7 @@
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
 #include "sweeps/measure/measure.hpp"
+#include "sweeps/spec/point_json.hpp"
 #include "sweeps/workers/worker_protocol.hpp"
 
 namespace pellucid::sweeps {

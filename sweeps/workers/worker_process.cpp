@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,88 +23,34 @@ constexpr std::size_t kMaxLineBytes = std::size_t{64} << 20;
 constexpr std::size_t kErrorTailBytes = 4096;
 constexpr int kTickMs = 100;
 
-struct Pipe {
-  int read = -1;
-  int write = -1;
-  Pipe() {
-    std::array<int, 2> files{};
-    if (::pipe2(files.data(), O_CLOEXEC) != 0) {
-      throw RuntimeError(fmt::format("no pipe to a worker: {}", std::strerror(errno)));
-    }
-    read = files[0];
-    write = files[1];
-  }
-};
-
 void close_file(int& file) {
   if (file >= 0) ::close(std::exchange(file, -1));
 }
 
-/// Runs between fork and exec: async-signal-safe calls only.
-[[noreturn]] void become(char* const* argv, int in, int out, int err, pid_t parent) {
-  ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(125);  // it died before the line above
-  for (const int s : {SIGINT, SIGTERM, SIGPIPE})
-    ::signal(s, SIG_DFL);
-  sigset_t none;
-  sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  if (::dup2(in, STDIN_FILENO) >= 0 && ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0) {
-    ::execvp(argv[0], argv);
-  }
-  const char* words = std::strerror(errno);
-  const ssize_t ignored = ::write(STDERR_FILENO, words, std::strlen(words));
-  static_cast<void>(ignored);
-  ::_exit(127);
-}
-
 }  // namespace
 
-WorkerProcess::WorkerProcess(const std::vector<std::string>& command) {
-  std::vector<char*> argv;
-  for (const std::string& word : command)
-    argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  Pipe in;
-  Pipe out;
-  Pipe err;
-  const pid_t parent = ::getpid();
-  pid_ = ::fork();
-  if (pid_ == 0) become(argv.data(), in.read, out.write, err.write, parent);
-  ::close(in.read);
-  ::close(out.write);
-  ::close(err.write);
-  to_ = in.write;
-  from_ = out.read;
-  errors_ = err.read;
-  if (pid_ < 0) {
-    const int reason = errno;
-    close_file(to_);
-    close_file(from_);
-    close_file(errors_);
-    throw RuntimeError(fmt::format("no worker process: {}", std::strerror(reason)));
-  }
-  ::fcntl(from_, F_SETFL, O_NONBLOCK);
-  ::fcntl(errors_, F_SETFL, O_NONBLOCK);
+WorkerProcess::WorkerProcess(const std::vector<std::string>& command) : child_(start_process(command)) {
+  ::fcntl(child_.from, F_SETFL, O_NONBLOCK);
+  ::fcntl(child_.errors, F_SETFL, O_NONBLOCK);
 }
 
 WorkerProcess::~WorkerProcess() {
   end();
-  close_file(from_);
-  close_file(errors_);
+  close_file(child_.from);
+  close_file(child_.errors);
 }
 
 bool WorkerProcess::alive() const {
   siginfo_t info{};
-  if (pid_ < 0 || ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0) return false;
+  if (child_.pid < 0 || ::waitid(P_PID, static_cast<id_t>(child_.pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0)
+    return false;
   return info.si_pid == 0;
 }
 
 bool WorkerProcess::send(const std::string& line) {
   const std::string text = line + "\n";
   for (std::size_t done = 0; done < text.size();) {
-    const ssize_t n = ::write(to_, text.data() + done, text.size() - done);
+    const ssize_t n = ::write(child_.to, text.data() + done, text.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return false;
     done += static_cast<std::size_t>(n);
@@ -137,41 +82,41 @@ WorkerProcess::Received WorkerProcess::receive(std::chrono::steady_clock::time_p
       input_.erase(0, end + 1);
       return received;
     }
-    if (from_ < 0 || input_.size() > kMaxLineBytes) return {Event::ended, std::exchange(input_, {})};
+    if (child_.from < 0 || input_.size() > kMaxLineBytes) return {Event::ended, std::exchange(input_, {})};
     if (std::chrono::steady_clock::now() >= deadline) return {Event::timeout, {}};
     if (!idle()) return {Event::stopped, {}};
-    std::array<pollfd, 2> files{pollfd{from_, POLLIN, 0}, pollfd{errors_, POLLIN, 0}};
+    std::array<pollfd, 2> files{pollfd{child_.from, POLLIN, 0}, pollfd{child_.errors, POLLIN, 0}};
     if (::poll(files.data(), files.size(), kTickMs) <= 0) continue;  // a tick, or a signal that `idle` will see
     if (files[1].revents != 0) {
-      read_into(errors_, error_tail_);
+      read_into(child_.errors, error_tail_);
       if (error_tail_.size() > kErrorTailBytes) error_tail_.erase(0, error_tail_.size() - kErrorTailBytes);
     }
-    if (files[0].revents != 0) read_into(from_, input_);
+    if (files[0].revents != 0) read_into(child_.from, input_);
   }
 }
 
 std::string WorkerProcess::end() {
-  if (pid_ < 0) return "has ended";
-  close_file(to_);
+  if (child_.pid < 0) return "has ended";
+  close_file(child_.to);
   int status = 0;
-  pid_t ended = ::waitpid(pid_, &status, WNOHANG);
+  pid_t ended = ::waitpid(child_.pid, &status, WNOHANG);
   bool killed = false;
   if (ended == 0) {
     // Its pipe may close a moment before it ends by itself.
-    const auto patience = std::chrono::steady_clock::now() + std::chrono::milliseconds(from_ < 0 ? 500 : 0);
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::milliseconds(child_.from < 0 ? 500 : 0);
     while (ended == 0 && std::chrono::steady_clock::now() < patience) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      ended = ::waitpid(pid_, &status, WNOHANG);
+      ended = ::waitpid(child_.pid, &status, WNOHANG);
     }
   }
   if (ended == 0) {
     killed = true;
-    ::kill(pid_, SIGKILL);
-    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    ::kill(child_.pid, SIGKILL);
+    while (::waitpid(child_.pid, &status, 0) < 0 && errno == EINTR) {
     }
   }
-  pid_ = -1;
-  if (errors_ >= 0) read_into(errors_, error_tail_);
+  child_.pid = -1;
+  if (child_.errors >= 0) read_into(child_.errors, error_tail_);
   if (killed) return "was killed";
   if (WIFSIGNALED(status))
     return fmt::format("was killed by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
@@ -179,7 +124,7 @@ std::string WorkerProcess::end() {
 }
 
 void WorkerProcess::close() {
-  close_file(to_);
+  close_file(child_.to);
   const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(2);
   while (receive(patience, [] { return true; }).event == Event::line) {
   }

@@ -5,16 +5,13 @@
 #include <string>
 #include <vector>
 
-#include <sys/types.h>
+#include "sweeps/workers/process.hpp"
 
 namespace pellucid::sweeps {
 
-/// A child process that reads and writes lines. It lies in a process group of its own, so that Ctrl-C at a terminal
-/// reaches the parent alone, and dies with the parent. Destroying it kills it.
+/// A child process (process.hpp) that reads and writes lines. Destroying it kills it.
 class WorkerProcess {
  public:
-  /// Starts `command` (looked up in PATH when it has no slash). Throws RuntimeError when the system refuses; a program
-  /// that is missing shows as an end with status 127.
   explicit WorkerProcess(const std::vector<std::string>& command);
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
@@ -41,12 +38,11 @@ class WorkerProcess {
   void close();
   /// The last line that it wrote to standard error; empty without one.
   std::string last_words() const;
-  pid_t pid() const { return pid_; }
+  pid_t pid() const { return child_.pid; }
 
  private:
   bool read_into(int& file, std::string& buffer);
-  pid_t pid_ = -1;
-  int to_ = -1, from_ = -1, errors_ = -1;
+  Child child_;
   std::string input_, error_tail_;
 };
 

@@ -4,8 +4,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "sweeps/spec/plan.hpp"
-
 /// What parent and worker say to each other, one JSON object a line.
 ///
 ///   worker → parent   {"type": "hello", "protocol": 1, "device": …, "driver": …, "clock": …}     once, when it can
@@ -20,12 +18,6 @@
 namespace pellucid::sweeps {
 
 inline constexpr int kProtocol = 1;
-
-nlohmann::json point_to_json(const Point&);
-/// Throws RuntimeError when a field is missing or of another type.
-Point point_from_json(const nlohmann::json&);
-
-nlohmann::json value_to_json(const Value&);
 
 /// One line without the newline; text that is not UTF-8 is mended.
 std::string to_line(const nlohmann::json&);

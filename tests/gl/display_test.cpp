@@ -1,10 +1,17 @@
-#include "gl/display.hpp"
+#include "gl/display/display.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "gl/display_config.hpp"
+#include "gl/display/display_config.hpp"
 #include "tests/gl/gl_fixture.hpp"
 
 namespace pellucid::gl::test {
@@ -242,6 +249,31 @@ TEST_F(DisplayTest, OcioIsHonouredAndItsFirstViewIsTheDefault) {
   EXPECT_EQ(transform.views().size(), 6U);
   const std::string message = message_of<InputError>([] { const DisplayTransform none({}, "Film"); });
   EXPECT_TRUE(contains(message, config.path())) << message;
+}
+
+TEST_F(DisplayTest, ALookActsOnScenelinearPixelsBeforeTheView) {
+  TemporaryFolder folder;
+  std::string text(kDisplayConfig);
+  text += R"(
+looks:
+  - !<Look>
+    name: dim
+    process_space: lin_rec709
+    transform: !<MatrixTransform> {matrix: [0.25, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 1]}
+)";
+  const ScopedEnvironment ocio("OCIO", folder.write("look.ocio", text).string());
+  const DisplayTransform plain, dim({}, {}, "dim");
+  EXPECT_EQ(plain.look(), "");
+  EXPECT_EQ(dim.look(), "dim");
+  EXPECT_EQ(plain.looks(), std::vector<std::string>{"dim"});
+  std::vector<float> bright{4, 2, 0.4F}, quarter{1, 0.5F, 0.1F};
+  dim.apply(bright, 3);
+  plain.apply(quarter, 3);
+  for (std::size_t i = 0; i < bright.size(); ++i)
+    EXPECT_NEAR(bright[i], quarter[i], 1e-5);
+  const std::string message = message_of<InputError>([] { const DisplayTransform none({}, {}, "dimm"); });
+  EXPECT_TRUE(contains(message, "dim")) << message;
+  expect_cpu_and_gpu_agree(dim);
 }
 
 TEST_F(DisplayTest, EntersAConfigThroughItsInterchangeRole) {

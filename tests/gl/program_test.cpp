@@ -1,6 +1,11 @@
 #include "gl/program.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <glm/glm.hpp>
 

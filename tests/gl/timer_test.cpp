@@ -1,8 +1,12 @@
 #include "gl/timer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -32,7 +36,7 @@ class Load {
  private:
   Texture color_ = Texture::make_2d("load", Format::r32f, 128, 128);
   Framebuffer framebuffer_{"load", {&color_}};
-  Program program_{"load", {"gl/display.vert.glsl", "tests/gl/load.frag.glsl"}};
+  Program program_{"load", {"gl/display/display.vert.glsl", "tests/gl/load.frag.glsl"}};
   VertexArray triangle_{"load"};
 };
 

@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
 # The house's own rules, one a verb: `check.sh VERB` from anywhere; status 0 kept, 1 broken (each break on a line), 77 cannot tell.
 set -euo pipefail
+set -f  # `*/` stands for itself
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 readonly rooms=(gl algorithms sweeps plots sandbox)  # each may include itself and those before it
 readonly longest_file=450
+readonly largest_room=16
+readonly scripts=(bootstrap .ci/run tests/house/check.sh tests/house/mend_headers tests/release/debian.sh)
 broken=0
 
 complain() {
@@ -12,18 +15,59 @@ complain() {
   broken=1
 }
 
+die() {
+  printf 'check.sh: %s\n' "$*" >&2
+  kill -s TERM "$$"
+  exit 1
+}
+
 skip() {
   printf 'skipped: %s\n' "$*"
   exit 77
 }
 
-sources() { find "${rooms[@]}" tests -type f \( -name '*.cpp' -o -name '*.hpp' \) | sort; }
+# Lists of files, one a line. An empty one means that the tree is not where it should be, and a check over nothing proves nothing.
+listed() {
+  local found
+  found="$("$@" | sort)" || die "cannot list files: $*"
+  [[ -n $found ]] || die "nothing found: $*"
+  printf '%s\n' "$found"
+}
+sources() { listed find "${rooms[@]}" tests -type f \( -name '*.cpp' -o -name '*.hpp' \); }
+shaders() { listed find "${rooms[@]}" tests -type f -name '*.glsl'; }
 
-# Includes run one way only.
+# The order in which includes run in a room, as one line of its README states it, an entry a line: a file without its ending, a
+# folder with a slash at its end, `*/` for every other folder, or several that know each other.
+# "Includes run one way: `a`, `b` with `c`, `d/`, `*/`."
+order_of() {
+  sed -n 's/^Includes run one way: \(.*\)\.$/\1/p' "$1/README.md" | sed 's/ with /+/g' | tr -d '\140 ' | tr ',' '\n'
+}
+
+# The part of the room that the file stands in.
+part_of() {
+  local rest="${2#"$1"/}"
+  if [[ $rest == */* ]]; then printf '%s/' "${rest%%/*}"; else printf '%s' "${rest%%.*}"; fi
+}
+
+# Includes run one way only: between rooms, and between the parts of a room that states an order.
 check_includes() {
-  local -A rank=([tests]=${#rooms[@]})  # tests see everything, and nothing sees them
-  local i file line included
+  local -A rank=([tests]=${#rooms[@]}) part_rank=()  # tests see everything, and nothing sees them
+  local i file included line found from to part entry low high
   for i in "${!rooms[@]}"; do rank[${rooms[$i]}]=$i; done
+  local ordered=()
+  for file in $(listed find "${rooms[@]}" -name README.md); do
+    [[ -n $(order_of "${file%/README.md}") ]] || continue
+    ordered+=("${file%/README.md}")
+    i=0
+    for entry in $(order_of "${file%/README.md}"); do
+      i=$((i + 1))
+      for part in ${entry//+/ }; do part_rank["${file%/README.md}:$part"]=$i; done
+    done
+  done
+  for i in "${rooms[@]}"; do
+    [[ " ${ordered[*]} " == *" $i "* ]] || complain "$i/README.md states no order (\"Includes run one way: ...\")"
+  done
+  found="$({ sources; shaders; } | xargs grep -Hn '^ *# *include *"')" || die "no file includes anything"
   while IFS=: read -r file line included; do
     included="${included#*\"}"
     included="${included%%\"*}"
@@ -31,16 +75,45 @@ check_includes() {
       complain "$file:$line: \"$included\" is not given from the root"
     elif ((rank[${included%%/*}] > rank[${file%%/*}])); then
       complain "$file:$line: ${file%%/*} may not include ${included%%/*}"
-    elif [[ ! -f $included ]]; then
+    elif [[ ! -f $included && ! -f tests/template/${included#algorithms/} ]]; then  # the template is included as when it is copied
       complain "$file:$line: \"$included\" does not exist"
+    else
+      for i in "${ordered[@]}"; do
+        [[ $file == "$i"/* && $included == "$i"/* ]] || continue
+        from="$(part_of "$i" "$file")"
+        to="$(part_of "$i" "$included")"
+        [[ $from != "$to" ]] || continue
+        low="${part_rank["$i:$to"]:-}"
+        high="${part_rank["$i:$from"]:-}"
+        [[ -n $low || $to != */ ]] || low="${part_rank["$i:*/"]:-}"
+        [[ -n $high || $from != */ ]] || high="${part_rank["$i:*/"]:-}"
+        if [[ -z $low || -z $high ]]; then
+          complain "$i/README.md: the order of includes lacks $from or $to"
+        elif ((low > high || (low == high && high == ${part_rank["$i:*/"]:--1}))); then
+          complain "$file:$line: in $i, $from may not include $to (README.md states the order)"
+        fi
+      done
     fi
-  done < <(sources | xargs grep -Hn '^ *# *include *"')
+  done <<<"$found"
+}
+
+# A room is small enough for a newcomer: a header and its .cpp count once, and so does a shader's. Each room says what lies where.
+check_rooms() {
+  local folder names count found
+  found="$({ sources; shaders; } | grep -v '^tests/' | xargs -n 1 dirname | sort -u)" || die "no rooms"
+  for folder in $found; do
+    names="$(find "$folder" -maxdepth 1 \( -name '*.cpp' -o -name '*.hpp' \) -printf '%f\n' | sed 's/\..*//' | sort -u)"
+    count="$(grep -c . <<<"$names" || true)"
+    ((count <= largest_room)) || complain "$folder: $count files, more than $largest_room (a pair counts once)"
+    [[ -f $folder/README.md || -f ${folder%/*}/README.md ]] || complain "neither $folder nor the room around it has a README.md"
+  done
 }
 
 # A file is short enough, or tests/house/long_files.txt says why it is not.
 check_length() {
-  local file lines listed
+  local file lines listed counted
   listed=" $(sed -e 's/#.*//' -e '/^ *$/d' tests/house/long_files.txt | tr -s ' \n' '  ') "
+  counted="$({ sources; shaders; echo bootstrap; } | xargs wc -l)" || die "wc failed"
   while read -r lines file; do
     [[ $file == total ]] && continue
     if ((lines > longest_file)) && [[ $listed != *" $file "* ]]; then
@@ -48,7 +121,7 @@ check_length() {
     elif ((lines <= longest_file)) && [[ $listed == *" $file "* ]]; then
       complain "tests/house/long_files.txt: $file is short by now ($lines lines)"
     fi
-  done < <({ sources; find "${rooms[@]}" tests -name '*.glsl'; echo bootstrap; } | xargs wc -l)
+  done <<<"$counted"
   for file in $listed; do
     [[ -f $file ]] || complain "tests/house/long_files.txt: $file does not exist"
   done
@@ -71,50 +144,71 @@ check_presets() {
   done
 }
 
+# A file includes the standard headers of the names that it uses: a newer library drags others in.
+check_standard_headers() {
+  local missing
+  missing="$(sources | xargs awk -f tests/house/headers.awk tests/house/standard_names.txt)" || complain "headers.awk failed"
+  [[ -z $missing ]] || complain "$missing"$'\n'"(tests/house/mend_headers adds them)"
+}
+
 check_headers() {
-  local file
-  for file in $(sources | grep '\.hpp$'); do
+  local file files
+  files="$(sources | grep '\.hpp$')" || die "no headers"
+  while read -r file; do
     grep -q '^#pragma once$' "$file" || complain "$file: no #pragma once"
-  done
+  done <<<"$files"
 }
 
 check_scripts() {
   local script
-  for script in bootstrap .ci/run tests/house/check.sh; do
+  for script in "${scripts[@]}"; do
     bash -n "$script" || complain "$script does not parse"
     [[ -x $script ]] || complain "$script is not executable"
   done
   command -v shellcheck >/dev/null || skip "shellcheck is not installed"
-  shellcheck bootstrap .ci/run tests/house/check.sh || broken=1
+  shellcheck "${scripts[@]}" || broken=1
 }
 
-# Every work that the tree cites by key stands in references.bib, once.
+# Every work that the tree cites by key stands in references.bib, once. A key is a name and a year wherever it stands, or
+# what follows "references.bib:".
 check_references() {
-  local key keys
+  local key keys cited files
   keys="$(sed -n 's/^@[a-z]*{\([a-z0-9]*\),.*/\1/p' references.bib | sort)"
+  [[ -n $keys ]] || die "references.bib has no entry"
   [[ -z $(uniq -d <<<"$keys") ]] || complain "references.bib: twice: $(uniq -d <<<"$keys" | tr '\n' ' ')"
+  files="$(listed find "${rooms[@]}" tests README.md CONTRIBUTING.md CHANGELOG.md -type f \( -name '*.[ch]pp' -o -name '*.glsl' -o -name '*.toml' -o -name '*.md' \))"
+  # shellcheck disable=SC2016  # the backquotes are Markdown's
+  cited="$(xargs grep -hoE '\b[a-z]{3,}(19|20)[0-9]{2}\b|references\.bib`?: *`?[a-z0-9]+' <<<"$files" | sed 's/.*[: `]//' | sort -u)" ||
+    die "nobody cites anything"
   while read -r key; do
-    grep -qx "$key" <<<"$keys" || complain "references.bib has no $key"
-  done < <(grep -rhoE 'references\.bib: [a-z0-9]+(, [a-z]+[0-9]{4})*' "${rooms[@]}" tests --include='*.[chg]*' --include='*.md' |
-    sed 's/^references.bib: //' | tr -d ' ' | tr ',' '\n' | sort -u)
+    grep -qx "$key" <<<"$keys" || complain "references.bib has no $key, which $(xargs grep -lw "$key" <<<"$files" | head -n 1) cites"
+  done <<<"$cited"
 }
 
 # Work that is put off is written in the tracker, not in the code.
 check_words() {
-  if grep -IrnwE 'T[O]DO|F[I]XME|X[X]X' "${rooms[@]}" tests bootstrap .ci CMakeLists.txt; then broken=1; fi
+  local status=0
+  grep -IrnwE 'T[O]DO|F[I]XME|X[X]X' "${rooms[@]}" tests bootstrap .ci CMakeLists.txt || status=$?
+  case "$status" in
+    0) broken=1 ;;
+    1) ;;
+    *) die "cannot search for words" ;;
+  esac
 }
 
 case "${1:-}" in
   includes) check_includes ;;
+  rooms) check_rooms ;;
   length) check_length ;;
   format) check_format ;;
   presets) check_presets ;;
   headers) check_headers ;;
+  standard_headers) check_standard_headers ;;
   scripts) check_scripts ;;
   references) check_references ;;
   words) check_words ;;
   *)
-    printf 'usage: %s includes|length|format|presets|headers|scripts|references|words\n' "$0" >&2
+    printf 'usage: %s includes|rooms|length|format|presets|headers|standard_headers|scripts|references|words\n' "$0" >&2
     exit 2
     ;;
 esac

@@ -4,8 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/spec/spec.hpp"
-#include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -97,31 +95,9 @@ std::string message(auto&& f) {
 class Figures : public testing::Test {
  protected:
   std::string draw(const std::string& name, const std::vector<json>& from) {
-    write_figure(name, from, folder_ / (name + ".svg"));
-    return test::read_file(folder_ / (name + ".svg"));
+    return draw_figure(find_figure(name), from).svg;
   }
-  test::TemporaryFolder folder_;
 };
-
-TEST_F(Figures, AllAreDrawnFromOneStore) {
-  for (const FigureInfo& figure : figures()) {
-    if (!figure.name.starts_with("sampling_hulls.")) continue;  // the others: row_figures_test.cpp
-    const bool of_shadows = figure.spec == "sampling_hulls_shadows";
-    const std::string svg = draw(figure.name, of_shadows ? shadow_rows() : rows());
-    EXPECT_NE(svg.find("<svg"), std::string::npos) << figure.name;
-    EXPECT_GT(svg.size(), 2000U) << figure.name;
-    EXPECT_FALSE(figure.doc.empty());
-    EXPECT_EQ(find_figure(figure.name).title, figure.title);
-  }
-}
-
-TEST_F(Figures, NameSpecsThatExist) {
-  const std::vector<std::string> specs = sweeps::list_specs();
-  for (const FigureInfo& figure : figures()) {
-    for (const std::string& spec : {figure.spec, figure.spec + "_preview"})
-      EXPECT_NE(std::find(specs.begin(), specs.end(), spec), specs.end()) << figure.name << " names " << spec;
-  }
-}
 
 TEST_F(Figures, FollowTheData) {
   std::vector<json> changed = rows();

@@ -83,20 +83,18 @@ TEST(Rows, OfOtherTechniquesDoNotCountAsIncomplete) {
 }
 
 TEST(Rows, ConditionsCompareNumbersByValueAndTextAsText) {
-  const auto count = [&](std::vector<Condition> conditions) {
-    return choose_rows(slices(), conditions, {}).kept.size();
-  };
-  EXPECT_EQ(count({{"slices", "8.0"}}), 2U);
-  EXPECT_EQ(count({{"slices", "8"}, {"frame.format", "single"}}), 1U);
-  says(message([&] { count({{"slices", "9"}}); }), {"slices = 9", "'4', '8', '16'"});
-  says(message([&] { count({{"slises", "8"}}); }), {"slises", "'slices'"});
+  const auto count = [&](std::vector<Where> conditions) { return choose_rows(slices(), conditions, {}).kept.size(); };
+  EXPECT_EQ(count({{"slices", {"8.0"}}}), 2U);
+  EXPECT_EQ(count({{"slices", {"8"}}, {"frame.format", {"single"}}}), 1U);
+  says(message([&] { count({{"slices", {"9"}}}); }), {"slices = 9", "'4', '8', '16'"});
+  says(message([&] { count({{"slises", {"8"}}}); }), {"slises", "'slices'"});
 }
 
 TEST(Rows, OfSeveralDriversAreRefused) {
   std::vector<json> rows = slices();
   rows.back()["driver"] = "2";
   says(message([&] { choose_rows(rows, {}, kFps); }), {"driver", "'1'", "'2'"});
-  const std::vector<Condition> one{{"driver", "2"}};
+  const std::vector<Where> one{{"driver", {"2"}}};
   EXPECT_EQ(choose_rows(rows, one, kFps).kept.size(), 1U);
 }
 
@@ -124,8 +122,9 @@ TEST(Rows, MeasuredTwiceAreNeverPooled) {
   std::vector<json> rows = slices();
   rows.push_back(rows[0]);
   rows.back()["point"] = "again";
-  says(message([&] { write_figure("sampling_hulls.error", rows, "never.svg"); }), {"slices = 4", "again"});
-  says(message([&] { chart_of_rows(rows, {.x = "slices", .y = "fps"}); }), {"slices = 4", "frame.format = half"});
+  says(message([&] { draw_figure(find_figure("sampling_hulls.error"), rows); }), {"slices = 4", "again"});
+  says(message([&] { chart_of_rows(rows, {.x = {.field = "slices"}, .y = {.field = "fps"}}); }),
+       {"slices = 4", "frame.format = half"});
 }
 
 TEST(RowChart, ChoosesAxesThatShowSomething) {
@@ -141,13 +140,18 @@ TEST(RowChart, ChoosesAxesThatShowSomething) {
 }
 
 TEST(RowChart, AsksForWhatItCannotDecide) {
-  says(message([] { chart_of_rows(slices(), {.x = "slices", .y = "fps", .series = {"technique"}}); }),
+  says(message(
+           [] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .series = {"technique"}}); }),
        {"slices = 4", "frame.format = single", "--series", "--where"});
-  says(message([] { chart_of_rows(slices(), {.x = "slices", .y = "fsp"}); }), {"'fsp'", "'fps'"});
-  says(message([] { chart_of_rows(slices(), {.x = "slices", .y = "fps", .series = {"colour"}}); }), {"colour"});
+  says(message([] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fsp"}}); }), {"'fsp'", "'fps'"});
+  says(
+      message([] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .series = {"colour"}}); }),
+      {"colour"});
   says(message([] { chart_of_rows({}, {}); }), {"no rows"});
   EXPECT_EQ(
-      chart_of_rows(slices(), {.x = "slices", .y = "fps", .conditions = {{"frame.format", "half"}}}).series.size(), 1U);
+      chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .where = {{"frame.format", {"half"}}}})
+          .series.size(),
+      1U);
 }
 
 }  // namespace

@@ -1,4 +1,9 @@
 // ./bootstrap where it says what it would do, and does nothing.
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "tests/sandbox/program.hpp"
 
 namespace pellucid::test {
@@ -43,6 +48,27 @@ TEST(Bootstrap, NamesWhatToInstallElsewhere) {
 TEST(Bootstrap, RefusesReleasesWithoutTheLibraries) {
   EXPECT_TRUE(refused(bootstrap_on("ID=debian\nVERSION_ID=\"11\"\n", {}), 1, {"debian 11", "Debian 12"}));
   EXPECT_TRUE(refused(bootstrap_on("ID=ubuntu\nID_LIKE=debian\nVERSION_ID=\"22.04\"\n", {"run"}), 1, {"Ubuntu 24.04"}));
+}
+
+TEST(Bootstrap, NamesEachToolThatIsTooOldAndBuildsNothing) {
+  if (run({"sh", "-c", "command -v dpkg-query"}).status != 0) GTEST_SKIP() << "takes a Debian machine";
+  const TemporaryFolder folder;
+  std::filesystem::copy_file(kBootstrap, folder / "bootstrap");
+  // Every package is installed, but an older compiler and CMake come first in the path.
+  write_file(folder / "dpkg-query",
+             "#!/bin/sh\nfor word; do case $word in -*) ;; *) echo $word installed;; esac; done\n");
+  write_file(folder / "cmake", "#!/bin/sh\necho cmake version 3.18.4\n");
+  write_file(folder / "old-g++", "#!/bin/sh\necho 10.2.1\n");
+  const auto os_release = write_file(folder / "os-release", "ID=debian\nVERSION_ID=\"12\"\n");
+  ASSERT_TRUE(succeeded(run({"chmod", "-R", "a+rx", folder.path().string()})));
+  const Outcome outcome =
+      run({"sh", "-c", "PATH='" + folder.path().string() + "':$PATH ./bootstrap"},
+          {.folder = folder.path(), .environment = {{"PELLUCID_OS_RELEASE", os_release.string()}, {"CXX", "old-g++"}}});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err,
+            "error: old-g++ 10.2.1 is too old: Pellucid needs 12 or newer\n"
+            "error: cmake 3.18.4 is too old: Pellucid needs 3.25 or newer\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "build"));
 }
 
 TEST(Bootstrap, TellsWhatIsMissingWithoutARightToInstall) {

@@ -1,7 +1,12 @@
 // pellucid sweep run, sweep status, results, table, plot: one small sweep from its spec to its curves.
 #include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <set>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -93,7 +98,7 @@ TEST_F(Sweep, MeasuresEveryPointOnceAndKeepsTheRows) {
     EXPECT_GE(row.at("flip_mean").get<double>(), 0);
     EXPECT_LE(row.at("flip_mean").get<double>(), 1);
     EXPECT_GT(row.at("peak_rss_bytes").get<double>(), 0);
-    for (const char* field : {"point", "device", "driver", "commit", "scene_hash", "shader_hash", "clock", "repeat"})
+    for (const char* field : {"point", "device", "driver", "commit", "scene_hash", "code_hash", "clock", "repeat"})
       EXPECT_FALSE(row.at(field).get<std::string>().empty()) << field;
     if (row.at("technique") == "sampling_hulls") hulls.insert(row.at("hulls").get<int>());
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,7 +59,7 @@ struct SceneParameters {
 
 class FakeCatalogue final : public Catalogue {
  public:
-  std::string shaders = "shaders 1";
+  std::string code = "code 1";
   SceneFacts forest{"hash of the forest", {"front", "inside"}, infos<SceneParameters>()};
   SceneFacts ball{"hash of the ball", {"near"}, infos<SceneParameters>()};
 
@@ -68,7 +69,7 @@ class FakeCatalogue final : public Catalogue {
     if (name == "faulty") return infos<Faulty>();
     throw InputError("unknown technique '" + std::string(name) + "'");
   }
-  std::string shader_hash(std::string_view name) const override { return shaders + " of " + std::string(name); }
+  std::string code_hash(std::string_view name) const override { return code + " of " + std::string(name); }
   const SceneFacts& scene(const std::string& name) const override {
     if (name == "forest") return forest;
     if (name == "ball" || name.ends_with("ball.toml")) return ball;

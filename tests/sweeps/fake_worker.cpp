@@ -1,8 +1,13 @@
 #include "tests/sweeps/fake_worker.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -12,6 +17,7 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
+#include "sweeps/spec/point_json.hpp"
 #include "sweeps/workers/run.hpp"
 #include "sweeps/workers/worker.hpp"
 #include "sweeps/workers/worker_protocol.hpp"

@@ -1,5 +1,10 @@
 // A paper as data: its head, the names of its entries, the quantities, and what mistakes say.
-#include "sweeps/spec/paper.hpp"
+#include "sweeps/papers/paper.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -55,7 +60,7 @@ TEST(Paper, MistakesInTheHeadNameTheirPlace) {
   EXPECT_EQ(error_of("title = \"x\"\n[quantities.twice]\nlabel = \"t\"\nexpression = \"2 * \"").substr(0, 47),
             "my.toml:4:14: quantities.twice.expression: expr");
   EXPECT_EQ(error_of("title = \"x\"\n[quantities.fps]\nlabel = \"t\"\nexpression = \"2\""),
-            "my.toml:2:1: quantities: quantities.fps: every row has a quantity of this name already");
+            "my.toml:2:1: quantities.fps: every row has a quantity of this name already");
   EXPECT_EQ(error_of("title = \"x\"\n[quantities.twice]\nlabel = \"t\""),
             "my.toml:2:1: 'expression' is missing in quantities.twice");
 }

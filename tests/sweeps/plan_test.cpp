@@ -1,7 +1,10 @@
 #include "sweeps/spec/plan.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -138,7 +141,7 @@ TEST(Plan, EveryThingThatMattersChangesTheId) {
   add(base + "reference.tolerance=1e-3\n");
   add(base + "reference.surfaces='rays'\n");
   FakeCatalogue edited_shader;
-  edited_shader.shaders = "shaders 2";
+  edited_shader.code = "code 2";
   add(base, edited_shader);
   FakeCatalogue edited_scene;
   edited_scene.forest.content_hash = "another hash";

@@ -1,10 +1,15 @@
 #include "sweeps/workers/run.hpp"
 
 #include <chrono>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -80,7 +85,7 @@ TEST_F(Sweep, RecordsWhereARowComesFrom) {
     EXPECT_EQ(row.at("clock"), "finish");
     EXPECT_EQ(row.at("argv"), "pellucid sweep run 'a b.toml'");
     EXPECT_EQ(row.at("scene_hash"), "hash of the ball");
-    EXPECT_EQ(row.at("shader_hash"), "shaders 1 of faulty");
+    EXPECT_EQ(row.at("code_hash"), "code 1 of faulty");
     EXPECT_TRUE(row.at("commit").is_string());
     EXPECT_TRUE(row.at("dirty").is_boolean());
     EXPECT_EQ(row.at("started_utc").get<std::string>().size(), 20U);

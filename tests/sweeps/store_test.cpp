@@ -1,6 +1,12 @@
 #include "sweeps/store/store.hpp"
 
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -94,7 +100,7 @@ TEST(Store, AChangedPlanHidesOldRowsAndKeepsThem) {
   const TemporaryFolder folder;
   Example e;
   fill(folder / "s.db", e);
-  e.catalogue.shaders = "other";
+  e.catalogue.code = "other";
   {
     Store store(folder / "s.db", Access::write);
     store.put_plan(e.spec, make_plan(e.spec, e.catalogue));

@@ -102,7 +102,7 @@ TEST(FigureTables, OursComeFromTheFiguresOwnBlocksViewsAndMoments) {
   EXPECT_EQ(texts(table, "FLIP"), (Words{"0.0200", "0.0300", "0.500", ""}));
   EXPECT_EQ(texts(table, "FLIP in shadows"), (Words{"0.0400", "", "", ""}));
   EXPECT_EQ(texts(table, "FLIP by 1,024 slices"), (Words{"0.0700", "", "", ""}));
-  EXPECT_TRUE(noted(table, "20.0 % of the first picture"));
+  EXPECT_TRUE(noted(table, "In shadows: where the shadows in the medium take more than 5 %"));
   EXPECT_TRUE(noted(table, "Not measured yet: (d) 64 slices."));
   EXPECT_FALSE(noted(table, "teapot"));
   ASSERT_EQ(table.records.size(), 4U);
@@ -120,7 +120,7 @@ TEST(FigureTables, OursComeFromTheFiguresOwnBlocksViewsAndMoments) {
 
 // ---- errors ----
 
-TEST(ErrorTables, EqualCountsAreDividedAndCounted) {
+TEST(ErrorTables, EqualCountsAreDivided) {
   constexpr const char* kSweep = "sampling_hulls_equal_preview";
   const auto of = [&](const char* block, const char* scene, json fields, double flip) {
     fields["scene"] = scene;
@@ -143,10 +143,9 @@ TEST(ErrorTables, EqualCountsAreDividedAndCounted) {
   EXPECT_EQ(texts(table, "Fig. 11, points in the middle, 32-bit floats: ratio")[0], "0.25")
       << "against slices in 32 bits";
   EXPECT_EQ(texts(table, "Fig. 8, points in the middle: ratio")[0], "");
-  EXPECT_TRUE(noted(table, "1 of 4 ratios are above 0.5."));
 }
 
-TEST(ErrorTables, ShadowsSayHowOftenAveragingHelps) {
+TEST(ErrorTables, ShadowsDivideAveragedByOneRate) {
   constexpr const char* kSweep = "sampling_hulls_shadows";
   const auto of = [&](const char* block, double flip, double rmse) {
     return row(kSweep, block, "sampling_hulls",
@@ -157,7 +156,6 @@ TEST(ErrorTables, ShadowsSayHowOftenAveragingHelps) {
       {of("fig11_counts_back", 0.03, 0.2), of("fig11_counts_back_unfiltered", 0.04, 0.1), of("fig11_hulls", 0.9, 0.9)});
   EXPECT_EQ(texts(table, "Fig. 11, points at the back: FLIP, ratio"), (Words{"", "", "", "0.75", ""}));
   EXPECT_EQ(texts(table, "Fig. 11, points at the back: RMSE, ratio"), (Words{"", "", "", "2.00", ""}));
-  EXPECT_TRUE(noted(table, "Averaging lowers the error in 1 of 2 cases."));
 }
 
 TEST(ErrorTables, ReferencesStandApart) {
@@ -181,8 +179,12 @@ TEST(ErrorTables, ReferencesStandApart) {
 
 /// A store that holds a row for every point of a spec fills its tables without a gap.
 TEST(FigureSpecs, FillTheirTables) {
+  Words lacking;
   for (const char* spec_name : {"sampling_hulls_figures", "sampling_hulls_equal", "sampling_hulls_shadows"}) {
-    if (lacks_assets(spec_name)) continue;
+    if (lacks_assets(spec_name)) {
+      lacking.emplace_back(spec_name);
+      continue;
+    }
     const Plan plan = make_plan(load_spec(spec_name));
     std::vector<json> rows;
     for (const Member& member : plan.members) {
@@ -210,6 +212,7 @@ TEST(FigureSpecs, FillTheirTables) {
       }
     }
   }
+  if (!lacking.empty()) GTEST_SKIP() << "no assets for " << lacking.size() << " specs, among them " << lacking.front();
 }
 
 TEST(FigureSpecs, PreviewsNeedNoAssets) {

@@ -14,10 +14,10 @@ using nlohmann::json;
 /// Two columns with everything that a format must mind.
 Table awkward() {
   Table table;
-  table.info = {"a.table1", "50 % of R&D_1", "Author 2007, Table 1", "a_table1"};
+  table.info = {"a.table1", "a.table1", "50 % of R&D_1", "Author 2007, Table 1", "a_table1", "a_table1"};
   table.heading_rows = 1;
   table.rows = {{"n", {{"1", 1.0}, {"16", 16.0}}, TableRow::all},
-                {"fps, \"ours\"", {{"8.12†", 8.125}, {"failed", {}}}, TableRow::all},
+                {"fps, \"ours\"", {{"8.12†", 8.125}, {"failed", {}}}, TableRow::all, Better::more},
                 {"a|b × c", {{"1–2", {}}, {"", {}}}, TableRow::markdown | TableRow::latex},
                 {"[low]", {{"x", 0.1}, {"", {}}}, TableRow::csv}};
   table.records = {{{"n", Value(std::int64_t{1})}, {"paper", Value(50.0)}, {"ours", Value(8.125)}},
@@ -44,6 +44,42 @@ TEST(TableFormats, CsvFollowsRfc4180) {
             "n,1,16\r\n"
             "\"fps, \"\"ours\"\"\",8.125,failed\r\n"
             "[low],0.1,\r\n");
+}
+
+TEST(TableFormats, LatexSetsTheBestValueInBoldAndAlignsNumbers) {
+  Table table = awkward();
+  table.notes.clear();
+  table.rows = {{"n", {{"1", 1.0}, {"two", {}}, {"3", 3.0}}, TableRow::all},
+                {"fps (paper)", {{"9", 9.0}, {"", {}}, {"90", 90.0}}, TableRow::all},
+                {"fps (ours)", {{"10.50", 10.5}, {"8.12†", 8.125}, {"failed", {}}}, TableRow::all, Better::more},
+                {"FLIP", {{"0.200", 0.2}, {"0.100", 0.1}, {"0.100", 0.1}}, TableRow::all, Better::less},
+                {"share", {{"0.3", 0.3}, {"0.4", 0.4}, {"0.5", 0.5}}, TableRow::all}};
+  const auto lines = [&](const LatexOptions& options) {
+    const std::string text = format_table(table, TableFormat::latex, options);
+    const std::size_t from = text.find("\\begin{tabular}");
+    return text.substr(from, text.find("    \\bottomrule") - from);
+  };
+  EXPECT_EQ(lines({.siunitx = false, .bold_best = true}),
+            "\\begin{tabular}{lrrr}\n"
+            "    \\toprule\n"
+            "    n & 1 & two & 3 \\\\\n"
+            "    \\midrule\n"
+            "    fps (paper) & 9 &  & 90 \\\\\n"
+            "    fps (ours) & \\textbf{10.50} & 8.12$^\\dagger$ & failed \\\\\n"
+            "    FLIP & 0.200 & \\textbf{0.100} & \\textbf{0.100} \\\\\n"
+            "    share & 0.3 & 0.4 & 0.5 \\\\\n");
+  EXPECT_EQ(lines({.siunitx = true, .bold_best = true}),
+            "\\begin{tabular}{l\n"
+            "    S[table-format=2.3, detect-weight]\n"
+            "    S[table-format=1.3, detect-weight]\n"
+            "    S[table-format=2.3, detect-weight]}\n"
+            "    \\toprule\n"
+            "    n & {1} & {two} & {3} \\\\\n"
+            "    \\midrule\n"
+            "    fps (paper) & 9 &  & 90 \\\\\n"
+            "    fps (ours) & \\bfseries 10.50 & {8.12$^\\dagger$} & {failed} \\\\\n"
+            "    FLIP & 0.200 & \\bfseries 0.100 & \\bfseries 0.100 \\\\\n"
+            "    share & 0.3 & 0.4 & 0.5 \\\\\n");
 }
 
 TEST(TableFormats, LatexEscapesAndUsesBooktabs) {

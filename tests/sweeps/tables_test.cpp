@@ -112,7 +112,7 @@ TEST(Tables, OursComeFromTheStoresRows) {
   EXPECT_DOUBLE_EQ(row_of(table, "fps (ours)").cells[3].value.value(), 1000.0 / 6);
   EXPECT_TRUE(noted(table, "Ours: GPU, 4.5 A; 720 × 540; timed by queries on the GPU."));
   EXPECT_TRUE(noted(table, "Scene fog_forest, view path: procedural trees"));
-  EXPECT_TRUE(noted(table, "30 frames a point"));
+  EXPECT_TRUE(noted(table, "30 frames per point"));
   EXPECT_TRUE(noted(table, "step error is at most 0.00031, 1.2e-06 in the mean"));
   EXPECT_TRUE(noted(table, "-1.2 % to -1.2 %"));
   EXPECT_TRUE(noted(table, "Commit 0123456789ab."));

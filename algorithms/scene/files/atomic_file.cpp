@@ -3,10 +3,12 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "gl/error.hpp"
@@ -22,31 +24,53 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (fs::is_symlink(target_, ignored)) {
     if (fs::path real = fs::weakly_canonical(target_, ignored); !ignored) target_ = std::move(real);
   }
-  const fs::file_status status = fs::status(target_, ignored);
-  if (fs::is_directory(status)) fail(EISDIR);
-  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
-  static std::atomic<unsigned> counter{0};
-  written_ = target_;
-  if (!in_place) written_ += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
-  const int flags = O_WRONLY | O_CLOEXEC | (in_place ? 0 : O_CREAT | O_EXCL);
-  const int descriptor = ::open(written_.c_str(), flags, 0666);
-  if (descriptor < 0) {
-    const int error = errno;
-    written_.clear();
-    fail(error);
+  struct stat before {};
+  const bool exists = ::stat(target_.c_str(), &before) == 0;
+  if (exists && S_ISDIR(before.st_mode)) fail(EISDIR);
+  in_place_ = exists && !S_ISREG(before.st_mode);
+  const int descriptor = open_unnamed_or_temporary();
+  if (descriptor < 0) fail(errno);
+  // A file that is overwritten keeps its mode, and its owner where that may be given.
+  if (exists && !in_place_) {
+    if (::fchown(descriptor, before.st_uid, before.st_gid) != 0) errno = 0;
+    ::fchmod(descriptor, before.st_mode & 07777U);
   }
   file_ = ::fdopen(descriptor, "wb");
   if (file_ == nullptr) {
     const int error = errno;
     ::close(descriptor);
-    if (!in_place) ::unlink(written_.c_str());
+    remove_temporary();
     fail(error);
   }
 }
 
+/// A file without a name is gone whenever the process ends, Ctrl-C included; where the file system has none, a
+/// temporary one is written.
+int AtomicFile::open_unnamed_or_temporary() {
+  if (in_place_) return ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+  const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (unnamed >= 0) return unnamed;
+  temporary_ = temporary_name();
+  const int descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC | O_CREAT | O_EXCL, 0666);
+  if (descriptor < 0) temporary_.clear();
+  return descriptor;
+}
+
+/// Short, since the target's own name may be as long as names can be.
+fs::path AtomicFile::temporary_name() const {
+  static std::atomic<unsigned> counter{0};
+  return target_.parent_path() / fmt::format(".pellucid-{}-{}.tmp", ::getpid(), counter++);
+}
+
+void AtomicFile::remove_temporary() {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  temporary_.clear();
+}
+
 AtomicFile::~AtomicFile() {
   if (file_ != nullptr) std::fclose(file_);
-  if (!written_.empty() && written_ != target_) ::unlink(written_.c_str());
+  remove_temporary();
 }
 
 void AtomicFile::fail(int error_number) const {
@@ -73,11 +97,16 @@ void AtomicFile::seek(std::uint64_t to) {
 
 void AtomicFile::commit() {
   if (std::fflush(file_) != 0) fail(errno);
-  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
-  if (written_ != target_) {
-    if (std::rename(written_.c_str(), target_.c_str()) != 0) fail(errno);
+  if (!in_place_ && temporary_.empty()) {
+    // linkat() does not replace a file, so the name comes into being beside it.
+    const fs::path name = temporary_name();
+    const std::string unnamed = fmt::format("/proc/self/fd/{}", ::fileno(file_));
+    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) fail(errno);
+    temporary_ = name;
   }
-  written_.clear();
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
+  if (!in_place_ && std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  temporary_.clear();
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

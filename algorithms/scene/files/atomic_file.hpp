@@ -9,8 +9,9 @@
 
 namespace pellucid {
 
-/// A file that appears whole or not at all: it is written beside its target under another name and renamed by commit().
-/// A target that exists and is no regular file (a device, a pipe) is written in place. Every failure throws
+/// A file that appears whole or not at all: it is written without a name (or where the file system knows no such files
+/// under another name beside its target) and takes its place in commit(). A file that is replaced keeps its mode. A
+/// target that exists and is no regular file (a device, a pipe) is written in place. Every failure throws
 /// RuntimeError "cannot write 'path': reason", and what was written is removed unless commit() has succeeded.
 class AtomicFile {
  public:
@@ -28,8 +29,12 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(int error_number) const;
+  int open_unnamed_or_temporary();
+  std::filesystem::path temporary_name() const;
+  void remove_temporary();
   std::filesystem::path target_;
-  std::filesystem::path written_;  ///< the temporary name, or the target itself when it is a device
+  std::filesystem::path temporary_;  ///< the name that it has before its own; empty while it has none
+  bool in_place_ = false;
   std::FILE* file_ = nullptr;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <string_view>
@@ -28,7 +29,31 @@ void check_image_size(long long width, long long height, const std::string& what
                                height, kMaxSide));
 }
 
-ImageFile read_image(const std::filesystem::path& path) {
+bool every_layer(const std::string&) {
+  return true;
+}
+bool no_layer(const std::string&) {
+  return false;
+}
+
+std::string size_text(const PictureFile& file) {
+  const std::string size = fmt::format("{}x{} pixels", file.image.width, file.image.height);
+  if (file.data_window == file.display_window) return size;
+  const auto corners = [](const PixelWindow& w) {
+    return fmt::format("({}, {})-({}, {})", w.min_x, w.min_y, w.max_x, w.max_y);
+  };
+  return fmt::format("{} (display window {}, data window {})", size, corners(file.display_window),
+                     corners(file.data_window));
+}
+
+InputError malformed_image(const std::filesystem::path& path, std::string_view reason) {
+  reason = reason.substr(0, reason.find('\n'));
+  while (reason.ends_with('.') || reason.ends_with(' '))
+    reason.remove_suffix(1);
+  return InputError(fmt::format("cannot read image '{}': {}", path.string(), reason));
+}
+
+PictureFile read_picture(const std::filesystem::path& path, const LayerFilter& wanted) {
   const std::string shown = path.string();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -45,12 +70,16 @@ ImageFile read_image(const std::filesystem::path& path) {
   const std::string_view start(head.data(), static_cast<std::size_t>(file.gcount()));
   file.close();
   if (start.empty()) throw InputError(fmt::format("cannot read image '{}': the file is empty", shown));
-  if (start.starts_with(kExrMagic)) return read_exr(path);
+  if (start.starts_with(kExrMagic)) return read_exr(path, wanted);
   if (start == kPngMagic) {
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     return read_png(path, error ? 0 : bytes);
   }
   throw InputError(fmt::format("cannot read image '{}': neither OpenEXR nor PNG", shown));
+}
+
+ImageFile read_image(const std::filesystem::path& path) {
+  return read_picture(path);
 }
 
 }  // namespace pellucid

@@ -2,15 +2,21 @@
 #include <cerrno>
 #include <cmath>
 #include <csetjmp>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <span>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <png.h>
 
 #include "algorithms/scene/files/atomic_file.hpp"
+#include "algorithms/scene/images/chromaticities.hpp"
 #include "algorithms/scene/images/image_formats.hpp"
 #include "gl/error.hpp"
 
@@ -48,10 +54,6 @@ bool guarded(Session& s, void (*step)(Session&)) {
   if (setjmp(png_jmpbuf(s.png)) != 0) return false;
   step(s);
   return true;
-}
-
-InputError malformed(const std::filesystem::path& path, std::string_view reason) {
-  return InputError(fmt::format("cannot read image '{}': {}", path.string(), reason));
 }
 
 // ---- reading ----
@@ -101,6 +103,27 @@ void read_texts(Session& s, Attributes& attributes) {
   for (int i = 0; i < count; ++i) {
     attributes.emplace(texts[i].key, texts[i].text != nullptr ? texts[i].text : "");
   }
+}
+
+/// W3C PNG (third edition), 11.3.2: an sRGB or iCCP chunk goes before gAMA and cHRM.
+PngColor read_color(Session& s) {
+  PngColor color;
+  int intent = 0;
+  color.srgb = png_get_sRGB(s.png, s.info, &intent) != 0;
+  png_charp name = nullptr;
+  png_bytep profile = nullptr;
+  png_uint_32 length = 0;
+  int compression = 0;
+  if (png_get_iCCP(s.png, s.info, &name, &compression, &profile, &length) != 0) color.icc_profile = name;
+  if (color.srgb || !color.icc_profile.empty()) return color;
+  double gamma = 0;
+  if (png_get_gAMA(s.png, s.info, &gamma) != 0 && gamma > 0) color.gamma = gamma;
+  double xy[8] = {};
+  if (png_get_cHRM(s.png, s.info, &xy[0], &xy[1], &xy[2], &xy[3], &xy[4], &xy[5], &xy[6], &xy[7]) != 0) {
+    const Chromaticities named{{xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}, {xy[0], xy[1]}};
+    color.other_primaries = !named.same_as(Chromaticities{});
+  }
+  return color;
 }
 
 // ---- writing ----
@@ -153,12 +176,12 @@ png_byte to_byte(float v) {
 
 }  // namespace
 
-ImageFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes) {
+PictureFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes) {
   ReadSession s;
   s.file = std::fopen(path.c_str(), "rb");
-  if (s.file == nullptr) throw malformed(path, std::strerror(errno));
+  if (s.file == nullptr) throw malformed_image(path, std::strerror(errno));
   const auto require = [&](bool done) {
-    if (!done) throw malformed(path, fmt::format("the PNG file is truncated or damaged ({})", s.error));
+    if (!done) throw malformed_image(path, fmt::format("the PNG file is truncated or damaged ({})", s.error));
   };
   require(guarded(s, read_header));
   check_image_size(s.width, s.height, fmt::format("cannot read image '{}'", path.string()));
@@ -166,12 +189,12 @@ ImageFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes) 
   const std::size_t row_bytes = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.channels * s.depth / 8);
   const std::size_t total = row_bytes * static_cast<std::size_t>(s.height);
   // Deflate shrinks at most 1032-fold, and a packed PNG of 1 bit a pixel grows 32-fold when expanded.
-  if (total / (1032U * 32U) > file_bytes) throw malformed(path, "the PNG file is truncated");
+  if (total / (1032U * 32U) > file_bytes) throw malformed_image(path, "the PNG file is truncated");
   s.bytes.resize(total);
   set_rows(s, row_bytes);
   require(guarded(s, read_rows));
 
-  ImageFile result;
+  PictureFile result;
   result.display_encoded = true;
   result.image = Image(s.width, s.height, s.channels);
   std::vector<float>& pixels = result.image.pixels;
@@ -186,6 +209,8 @@ ImageFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes) 
                    [](png_byte b) { return static_cast<float>(b) / 255.0F; });
   }
   read_texts(s, result.attributes);
+  result.data_window = result.display_window = {0, 0, s.width - 1, s.height - 1};
+  result.png = read_color(s);
   return result;
 }
 

@@ -3,23 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <fstream>
 #include <limits>
+#include <map>
 #include <new>
-#include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 
-#include <assimp/DefaultIOSystem.h>
-#include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include "gl/error.hpp"
+#include "algorithms/scene/meshes/raw_mesh.hpp"
 
 namespace pellucid {
 
@@ -27,234 +21,184 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 31;
+constexpr double kMaxRoundingShare = 1e-3;
 
-InputError unreadable(const fs::path& path, std::string_view reason) {
-  return InputError(fmt::format("cannot read mesh '{}': {}", path.string(), reason));
-}
-
-/// Notes which files Assimp opens.
-class NotingFiles : public Assimp::DefaultIOSystem {
- public:
-  explicit NotingFiles(std::vector<fs::path>& opened) : opened_(opened) {}
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
-    const fs::path path(file);
-    if (stream != nullptr && std::find(opened_.begin(), opened_.end(), path) == opened_.end()) opened_.push_back(path);
-    return stream;
-  }
-
- private:
-  std::vector<fs::path>& opened_;
-};
-
-struct Counts {
-  std::uint64_t vertices = 0;
-  std::uint64_t faces = 0;
-};
-
-/// The lines of a text file that are neither empty nor comments.
-class Lines {
- public:
-  explicit Lines(const fs::path& path) : file_(path, std::ios::binary) {}
-  bool next() {
-    while (std::getline(file_, line_)) {
-      const auto first = line_.find_first_not_of(" \t\r");
-      if (first != std::string::npos && line_[first] != '#') return true;
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  template <class Positions>
+  explicit Box(const Positions& positions) {
+    for (const auto& p : positions) {
+      low = glm::min(low, glm::dvec3(p));
+      high = glm::max(high, glm::dvec3(p));
     }
-    return false;
   }
-  const std::string& line() const { return line_; }
-
- private:
-  std::ifstream file_;
-  std::string line_;
+  double longest() const {
+    const glm::dvec3 sides = high - low;
+    return std::max({sides.x, sides.y, sides.z});
+  }
 };
 
-void check_counts(const fs::path& path, const Counts& claimed, std::uintmax_t bytes) {
-  if (claimed.faces > kMaxTriangles || claimed.vertices > 3 * kMaxTriangles) {
-    throw unreadable(path, fmt::format("{} vertices and {} faces; at most {} triangles are read", claimed.vertices,
-                                       claimed.faces, kMaxTriangles));
+RawMesh read_raw(const fs::path& path) {
+  const std::string shown = path.extension().string();
+  std::string kind = shown;
+  std::transform(kind.begin(), kind.end(), kind.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (kind == ".obj") return read_obj(path);
+  if (kind == ".ply") return read_ply(path);
+  if (kind == ".off") return read_off(path);
+  if (kind == ".gltf" || kind == ".glb") return read_gltf(path, kind == ".glb");
+  if (kind == ".3ds") return read_3ds(path);
+  throw unreadable_mesh(path, fmt::format("'{}' is not one of .obj, .ply, .off, .gltf, .glb, .3ds", shown));
+}
+
+template <class T>
+void keep(std::vector<T>& values, const std::vector<std::uint32_t>& old_numbers) {
+  if (values.empty()) return;
+  std::vector<T> kept;
+  kept.reserve(old_numbers.size());
+  for (const std::uint32_t old : old_numbers)
+    kept.push_back(values[old]);
+  values = std::move(kept);
+}
+
+/// Scanners leave points without a place, and any vertex without a face would count for the bounds.
+void drop_unused_vertices(RawMesh& raw) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> numbers(raw.positions.size(), kUnused), old_numbers;
+  for (const glm::uvec3& t : raw.triangles)
+    for (int c = 0; c < 3; ++c)
+      numbers[t[c]] = 0;
+  for (std::uint32_t v = 0; v < numbers.size(); ++v) {
+    if (numbers[v] == kUnused) continue;
+    numbers[v] = static_cast<std::uint32_t>(old_numbers.size());
+    old_numbers.push_back(v);
   }
-  if (claimed.vertices + claimed.faces > bytes) {  // each takes a byte at the very least
-    throw unreadable(path, fmt::format("its header claims {} vertices and {} faces, more than {} bytes can hold",
-                                       claimed.vertices, claimed.faces, bytes));
+  if (old_numbers.size() == raw.positions.size()) return;
+  for (glm::uvec3& t : raw.triangles)
+    t = {numbers[t.x], numbers[t.y], numbers[t.z]};
+  keep(raw.positions, old_numbers);
+  keep(raw.normals, old_numbers);
+  keep(raw.colors, old_numbers);
+  keep(raw.uvs, old_numbers);
+}
+
+/// Shifts before rounding, where the mesh lies far from the origin.
+void round_positions(const fs::path& path, const RawMesh& raw, MeshFile& file) {
+  for (std::size_t v = 0; v < raw.positions.size(); ++v) {
+    const glm::dvec3& p = raw.positions[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw unreadable_mesh(path, fmt::format("vertex {} is not finite", v));
+  }
+  const Box box(raw.positions);
+  constexpr double kFar = 16;  // extents
+  const glm::dvec3 reach = glm::max(glm::abs(box.low), glm::abs(box.high));
+  if (std::max({reach.x, reach.y, reach.z}) > kFar * box.longest()) file.origin = box.low + (box.high - box.low) / 2.0;
+  file.mesh.positions.reserve(raw.positions.size());
+  for (const glm::dvec3& p : raw.positions) {
+    const glm::vec3 rounded(p - file.origin);
+    if (!std::isfinite(rounded.x) || !std::isfinite(rounded.y) || !std::isfinite(rounded.z))
+      throw unreadable_mesh(path, "its coordinates are too large for 32 bits");
+    file.mesh.positions.push_back(rounded);
   }
 }
 
-/// Assimp allocates by what the header claims before it reads on.
-void check_ply(const fs::path& path, std::uintmax_t bytes) {
-  Counts counts;
-  Lines lines(path);
-  for (int n = 0; n < 1000 && lines.next() && !lines.line().starts_with("end_header"); ++n) {
-    std::istringstream words(lines.line());
-    std::string word;
-    std::string element;
-    std::uint64_t count = 0;
-    if (!(words >> word >> element >> count) || word != "element") continue;
-    if (element == "vertex") counts.vertices = count;
-    if (element == "face") counts.faces = count;
-  }
-  check_counts(path, counts, bytes);
+bool has_direction(const glm::vec3& normal) {
+  const double length = glm::length(glm::dvec3(normal));
+  return std::isfinite(length) && length > 0;
 }
 
-/// Assimp also mends a face that names no vertex, and tells only its log.
-void check_off(const fs::path& path, std::uintmax_t bytes) {
-  Lines lines(path);
-  Counts counts;
-  std::istringstream words;
-  const auto next_line = [&] {
-    if (!lines.next()) return false;
-    words = std::istringstream(lines.line());
-    return true;
+/// The file's normals where it has them; what a triangle lacks at any corner is made for all three.
+void set_normals(RawMesh& raw, double crease_deg, MeshFile& file) {
+  Mesh& mesh = file.mesh;
+  const bool grouped = std::any_of(raw.smoothing.begin(), raw.smoothing.end(), [](std::uint32_t g) { return g != 0; });
+  const std::span<const std::uint32_t> groups(raw.smoothing.data(), grouped ? raw.smoothing.size() : 0);
+  if (raw.normals.empty()) {
+    make_normals(mesh, crease_deg, groups);
+    return;
+  }
+  const auto lacks = [&](const glm::uvec3& t) {
+    return !has_direction(raw.normals[t.x]) || !has_direction(raw.normals[t.y]) || !has_direction(raw.normals[t.z]);
   };
-  std::string keyword;
-  bool sound = next_line() && words >> keyword && keyword.ends_with("OFF");
-  sound = sound && (words >> counts.vertices || (next_line() && words >> counts.vertices)) && words >> counts.faces;
-  if (!sound) throw unreadable(path, "malformed OFF header");
-  check_counts(path, counts, bytes);
-  for (std::uint64_t v = 0; v < counts.vertices; ++v) {
-    if (!lines.next()) throw unreadable(path, fmt::format("it ends at vertex {} of {}", v, counts.vertices));
+  const auto lacking = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), lacks);
+  Mesh made;
+  if (lacking > 0) {
+    made.positions = mesh.positions;
+    made.triangles = mesh.triangles;
+    make_normals(made, crease_deg, groups);
+    file.warnings.push_back(
+        fmt::format("{} of its {} triangles have no normals; they are made", lacking, mesh.triangles.size()));
   }
-  for (std::uint64_t f = 0; f < counts.faces; ++f) {
-    if (!lines.next()) throw unreadable(path, fmt::format("it ends at face {} of {}", f, counts.faces));
-    const char* at = lines.line().data();
-    const char* end = at + lines.line().size();
-    const auto read = [&](std::uint64_t& number) {
-      while (at != end && (*at == ' ' || *at == '\t'))
-        ++at;
-      const auto [past, error] = std::from_chars(at, end, number);
-      at = past;
-      return error == std::errc{};
-    };
-    std::uint64_t corners = 0;
-    bool good = read(corners);
-    for (std::uint64_t c = 0; good && c < corners; ++c) {
-      std::uint64_t vertex = 0;
-      good = read(vertex) && vertex < counts.vertices;
+  for (const glm::vec3& n : raw.normals)
+    mesh.normals.push_back(has_direction(n) ? glm::vec3(glm::normalize(glm::dvec3(n))) : glm::vec3(0, 1, 0));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> split;  // given and made vertex to a new one
+  for (std::size_t f = 0; lacking > 0 && f < mesh.triangles.size(); ++f) {
+    glm::uvec3& t = mesh.triangles[f];
+    if (!lacks(t)) continue;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t given = t[c], other = made.triangles[f][c];
+      const auto [at, is_new] =
+          split.emplace(std::pair(given, other), static_cast<std::uint32_t>(mesh.positions.size()));
+      t[c] = at->second;
+      if (!is_new) continue;
+      mesh.positions.push_back(glm::vec3(mesh.positions[given]));
+      mesh.normals.push_back(made.normals[other]);
+      raw.normals.push_back(made.normals[other]);
+      if (!mesh.colors.empty()) mesh.colors.push_back(glm::vec3(mesh.colors[given]));
+      if (!mesh.uvs.empty()) mesh.uvs.push_back(glm::vec2(mesh.uvs[given]));
     }
-    if (!good) throw unreadable(path, fmt::format("face {} names a vertex that does not exist", f));
   }
 }
-
-void check_before_import(const fs::path& path, const std::string& kind) {
-  static constexpr std::array<std::string_view, 6> kKinds = {".obj", ".ply", ".off", ".gltf", ".glb", ".3ds"};
-  if (std::find(kKinds.begin(), kKinds.end(), kind) == kKinds.end()) {
-    throw unreadable(path, fmt::format("'{}' is not one of {}", kind, fmt::join(kKinds, ", ")));
-  }
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) throw unreadable(path, error.message());
-  if (bytes == 0) throw unreadable(path, "the file is empty");
-  if (bytes > kMaxFileBytes) throw unreadable(path, fmt::format("{} bytes; at most {} are read", bytes, kMaxFileBytes));
-  if (kind == ".ply") check_ply(path, bytes);
-  if (kind == ".off") check_off(path, bytes);
-}
-
-/// Appends the triangles of `node` and of all below it.
-class Merger {
- public:
-  Merger(const fs::path& path, const aiScene& scene, Mesh& mesh) : path_(path), scene_(scene), mesh_(mesh) {
-    all_colored_ = all_mapped_ = all_normals_ = true;
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-      all_colored_ = all_colored_ && scene.mMeshes[m]->HasVertexColors(0);
-      all_mapped_ = all_mapped_ && scene.mMeshes[m]->HasTextureCoords(0);
-      all_normals_ = all_normals_ && scene.mMeshes[m]->HasNormals();
-    }
-  }
-
-  void add(const aiNode& node, const aiMatrix4x4& parent, int depth = 0) {
-    if (depth > 256) throw unreadable(path_, "its nodes are nested too deeply");
-    const aiMatrix4x4 to_mesh = parent * node.mTransformation;
-    for (unsigned m = 0; m < node.mNumMeshes; ++m)
-      add(*scene_.mMeshes[node.mMeshes[m]], to_mesh);
-    for (unsigned c = 0; c < node.mNumChildren; ++c)
-      add(*node.mChildren[c], to_mesh, depth + 1);
-  }
-
- private:
-  void add(const aiMesh& source, const aiMatrix4x4& to_mesh) {
-    if (mesh_.triangles.size() + source.mNumFaces > kMaxTriangles ||
-        mesh_.positions.size() + source.mNumVertices > 3 * kMaxTriangles) {
-      throw unreadable(path_, fmt::format("more than {} triangles", kMaxTriangles));
-    }
-    const auto first = static_cast<unsigned>(mesh_.positions.size());
-    const aiMatrix3x3 normal_to_mesh = aiMatrix3x3(to_mesh).Inverse().Transpose();
-    for (unsigned v = 0; v < source.mNumVertices; ++v) {
-      const aiVector3D p = to_mesh * source.mVertices[v];
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-        throw unreadable(path_, fmt::format("vertex {} is not finite", v));
-      }
-      mesh_.positions.emplace_back(p.x, p.y, p.z);
-      if (all_normals_) {
-        const aiVector3D n = normal_to_mesh * source.mNormals[v];
-        const float length = n.Length();
-        if (!std::isfinite(length) || !(length > 0)) {
-          throw unreadable(path_, fmt::format("the normal of vertex {} has no direction", v));
-        }
-        mesh_.normals.emplace_back(n.x / length, n.y / length, n.z / length);
-      }
-      if (all_colored_) {
-        const aiColor4D& c = source.mColors[0][v];
-        mesh_.colors.emplace_back(c.r, c.g, c.b);
-      }
-      if (all_mapped_) mesh_.uvs.emplace_back(source.mTextureCoords[0][v].x, source.mTextureCoords[0][v].y);
-    }
-    for (unsigned f = 0; f < source.mNumFaces; ++f) {
-      const aiFace& face = source.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines, which SortByPType leaves when nothing else is there
-      for (unsigned i = 0; i < 3; ++i) {
-        if (face.mIndices[i] >= source.mNumVertices) throw unreadable(path_, fmt::format("face {} names no vertex", f));
-      }
-      mesh_.triangles.emplace_back(first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]);
-    }
-  }
-
-  const fs::path& path_;
-  const aiScene& scene_;
-  Mesh& mesh_;
-  bool all_colored_ = false, all_mapped_ = false, all_normals_ = false;
-};
 
 }  // namespace
 
 MeshFile load_mesh_file(const fs::path& path, double crease_deg) {
-  std::string kind = path.extension().string();
-  std::transform(kind.begin(), kind.end(), kind.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  check_before_import(path, kind);
-  MeshFile result;
   try {
-    Assimp::Importer importer;
-    importer.SetIOHandler(new NotingFiles(result.files));  // NOLINT: the importer owns it
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene =
-        importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType |
-                                             aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure);
-    if (scene == nullptr) throw unreadable(path, importer.GetErrorString());
-    if (scene->mRootNode == nullptr) throw unreadable(path, "it has no triangles");
-    Merger(path, *scene, result.mesh).add(*scene->mRootNode, aiMatrix4x4());
+    RawMesh raw = read_raw(path);
+    if (raw.triangles.empty()) throw unreadable_mesh(path, "it has no triangles");
+    check_mesh_size(path, raw.positions.size(), raw.triangles.size());
+    drop_unused_vertices(raw);
+    MeshFile file;
+    file.files = {path};
+    file.files.insert(file.files.end(), raw.files.begin(), raw.files.end());
+    file.warnings = std::move(raw.warnings);
+    round_positions(path, raw, file);
+    file.mesh.colors = std::move(raw.colors);
+    file.mesh.uvs = std::move(raw.uvs);
+    file.mesh.triangles = std::move(raw.triangles);
+    set_normals(raw, crease_deg, file);
+    return file;
   } catch (const std::bad_alloc&) {
-    throw unreadable(path, "not enough memory");
+    throw unreadable_mesh(path, "not enough memory");
   }
-  if (result.mesh.triangles.empty()) throw unreadable(path, "it has no triangles");
-  if (result.mesh.normals.empty()) make_normals(result.mesh, crease_deg);
-  return result;
 }
 
 void fit_mesh(Mesh& mesh, double size_m) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity());
-  glm::dvec3 high = -low;
-  for (const glm::vec3& p : mesh.positions) {
-    low = glm::min(low, glm::dvec3(p));
-    high = glm::max(high, glm::dvec3(p));
-  }
-  const glm::dvec3 sides = high - low;
-  const double longest = std::max({sides.x, sides.y, sides.z});
-  if (!(longest > 0)) throw InputError("all its vertices are one point");
-  const glm::dvec3 center = (low + high) / 2.0;
+  const Box box(mesh.positions);
+  if (!(box.longest() > 0)) throw InputError("all its vertices are one point");
+  const glm::dvec3 center = (box.low + box.high) / 2.0;
   for (glm::vec3& p : mesh.positions)
-    p = glm::vec3((glm::dvec3(p) - center) * (size_m / longest));
+    p = glm::vec3((glm::dvec3(p) - center) * (size_m / box.longest()));
+}
+
+double rounding_share(const glm::dvec3& low, const glm::dvec3& high) {
+  const glm::dvec3 sides = high - low, reach = glm::max(glm::abs(low), glm::abs(high));
+  const double longest = std::max({sides.x, sides.y, sides.z});
+  constexpr double kHalfStep = 1.0 / (1 << 24);
+  return longest > 0 ? std::max({reach.x, reach.y, reach.z}) * kHalfStep / longest : 0;
+}
+
+void restore_origin(MeshFile& file) {
+  if (file.origin == glm::dvec3(0.0)) return;
+  const Box box(file.mesh.positions);
+  const double share = rounding_share(box.low + file.origin, box.high + file.origin);
+  if (share > kMaxRoundingShare)
+    file.warnings.push_back(
+        fmt::format("it lies so far from the origin that 32 bits move its points by up to {:.2g} of its extent; "
+                    "fit_m centres it before it is rounded",
+                    share));
+  for (glm::vec3& p : file.mesh.positions)
+    p = glm::vec3(glm::dvec3(p) + file.origin);
+  file.origin = glm::dvec3(0.0);
 }
 
 }  // namespace pellucid

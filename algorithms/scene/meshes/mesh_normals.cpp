@@ -2,7 +2,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <unordered_map>
+#include <vector>
 
 #include "algorithms/scene/meshes/mesh_file.hpp"
 
@@ -66,7 +68,7 @@ glm::dvec3 unit_or_up(const glm::dvec3& v) {
 
 }  // namespace
 
-void make_normals(Mesh& mesh, double crease_deg) {
+void make_normals(Mesh& mesh, double crease_deg, std::span<const std::uint32_t> groups) {
   const Neighbours around = find_neighbours(mesh);
   std::vector<glm::dvec3> area_normals;  // length: twice the triangle's area
   std::vector<glm::dvec3> unit_normals;
@@ -117,7 +119,9 @@ void make_normals(Mesh& mesh, double crease_deg) {
       glm::dvec3 sum(0.0);
       for (std::uint32_t i = begin; i < end; ++i) {
         const std::uint32_t g = around.triangles[i];
-        if (all || g == f || glm::dot(unit_normals[f], unit_normals[g]) >= least_cosine) sum += area_normals[g];
+        const bool together =
+            groups.empty() ? glm::dot(unit_normals[f], unit_normals[g]) >= least_cosine : (groups[f] & groups[g]) != 0;
+        if (all || g == f || together) sum += area_normals[g];
       }
       const double length = glm::length(sum);
       const glm::dvec3 normal = length > 1e-12 * glm::length(area_normals[f]) ? unit_or_up(sum) : unit_normals[f];

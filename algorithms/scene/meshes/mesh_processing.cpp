@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <fmt/format.h>
@@ -141,8 +142,7 @@ void process_mesh(Mesh& mesh, const MeshProcessing& processing, double crease_de
 }
 
 Mesh isosurface(const VolumeFile& volume, const IsosurfaceOptions& options) {
-  const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
-  const double min = static_cast<double>(*low), max = static_cast<double>(*high);
+  const double min = volume.value_range.x, max = volume.value_range.y;
   if (!(options.level > min && options.level < max)) {
     throw InputError(fmt::format("level {} is not between the data's {} and {}", options.level, min, max));
   }
@@ -150,20 +150,25 @@ Mesh isosurface(const VolumeFile& volume, const IsosurfaceOptions& options) {
   vtkNew<vtkImageData> image;
   image->SetDimensions(size.x, size.y, size.z);
   image->SetSpacing(volume.spacing.x, volume.spacing.y, volume.spacing.z);
+  // Values are taken from the level, so that a large offset costs no bits of the surface.
   image->AllocateScalars(VTK_FLOAT, 1);
-  std::copy(volume.values.begin(), volume.values.end(), static_cast<float*>(image->GetScalarPointer()));
+  auto* values = static_cast<float*>(image->GetScalarPointer());
+  const double farthest = std::max(max - options.level, options.level - min);
+  const double scale = farthest > 1e30 || farthest < 1e-30 ? 1 / farthest : 1.0;
+  for (std::size_t i = 0; i < volume.voxels.size(); ++i)
+    values[i] = static_cast<float>((volume.voxels[i] - options.level) * scale);
 
   // Two voxels of the minimum all around close the surface; the cubic kernel reaches that far.
   vtkNew<vtkImageConstantPad> pad;
   pad->SetInputData(image);
-  pad->SetConstant(min);
+  pad->SetConstant((min - options.level) * scale);
   pad->SetOutputWholeExtent(-2, size.x + 1, -2, size.y + 1, -2, size.z + 1);
 
   vtkNew<vtkFlyingEdges3D> contour;
   contour->ComputeNormalsOff();
   contour->ComputeGradientsOff();
   contour->ComputeScalarsOff();
-  contour->SetValue(0, options.level);
+  contour->SetValue(0, 0);
   if (options.refine > 1.0) {
     vtkNew<vtkImageInterpolator> cubic;
     cubic->SetInterpolationModeToCubic();

@@ -1,4 +1,11 @@
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -34,31 +41,39 @@ void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, M
   reader.integer("subdivide", subdivide, {0, 5});
   processing.subdivide = static_cast<int>(subdivide);
   const std::filesystem::path path = parse_file_name(reader, "file", folder, scene);
-  // What a file refers to counts as well; Assimp may look into the file itself first.
+  // What a file refers to counts as well.
   const auto note_files = [&](const std::vector<std::filesystem::path>& files) {
     for (const std::filesystem::path& other : files) {
-      if (other != path) scene.files_read.emplace_back(other.filename().string(), sha256_file(other));
+      if (other == path) continue;
+      scene.files_read.emplace_back(other.filename().string(), sha256_file(other));
+      scene.facts.files.push_back(other);
     }
   };
-  Mesh& out = mesh.from_file.emplace();
+  MeshFile file;
   if (reader.has("isosurface")) {
     IsosurfaceOptions options;
     reader.number("isosurface", options.level, {-1e30, 1e30});
     reader.number("refine", options.refine, {1, 4});
     const VolumeFile volume = located(reader, "file", [&] { return load_volume_file(path); });
     note_files(volume.files);
-    out = located(reader, "isosurface", [&] { return isosurface(volume, options); });
-    if (reader.has("crease_deg")) make_normals(out, crease_deg);
+    file.mesh = located(reader, "isosurface", [&] { return isosurface(volume, options); });
+    if (reader.has("crease_deg")) make_normals(file.mesh, crease_deg);
   } else {
-    MeshFile file = located(reader, "file", [&] { return load_mesh_file(path, crease_deg); });
+    file = located(reader, "file", [&] { return load_mesh_file(path, crease_deg); });
     note_files(file.files);
-    out = std::move(file.mesh);
   }
   located(reader, "file", [&] {
-    process_mesh(out, processing, crease_deg);
-    if (fit_m > 0) fit_mesh(out, fit_m);
+    process_mesh(file.mesh, processing, crease_deg);
+    if (fit_m > 0) {
+      fit_mesh(file.mesh, fit_m);
+    } else {
+      restore_origin(file);
+    }
   });
-  order_by_place(out);
+  for (const std::string& warning : file.warnings)
+    scene.warn(reader, "file", warning);
+  order_by_place(file.mesh);
+  mesh.from_file = std::move(file.mesh);
 }
 
 void parse_shape(TableReader& reader, MeshDescription& mesh) {
@@ -206,6 +221,7 @@ void parse_instances(TableReader& root, SceneDescription& scene) {
     reader.extent("scale", instance.scale, kLength, false);
     reader.color("tint", instance.tint, kShare);
     reader.points("cubes", instance.cubes, kCoordinate, kMostCubes);
+    if (reader.has("relief")) carry_relief(reader, scene, instance);
     reader.finish();
     if (instance.placement.position_path || instance.placement.spin) scene.animated.push_back(affected);
   }

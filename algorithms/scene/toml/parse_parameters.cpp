@@ -62,7 +62,8 @@ const DriveTarget& find_target(TableReader& reader, const std::string& wanted, P
 
 bool needs_precomputation(const DriveTarget& target) {
   const auto heavy = [](const Affected& affected) {
-    constexpr Part kHeavy[] = {Part::mesh, Part::forest, Part::voxels, Part::scattering, Part::transfer};
+    constexpr Part kHeavy[] = {Part::mesh,   Part::forest,     Part::relief_maps,
+                               Part::voxels, Part::scattering, Part::transfer};
     return std::find(std::begin(kHeavy), std::end(kHeavy), affected.part) != std::end(kHeavy);
   };
   return heavy(target.affected) || std::any_of(target.also.begin(), target.also.end(), heavy);

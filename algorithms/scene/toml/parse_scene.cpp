@@ -1,10 +1,16 @@
-#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include "algorithms/scene/files/asset_path.hpp"
 #include "algorithms/scene/files/hash.hpp"
+#include "algorithms/scene/images/environment_layout.hpp"
 #include "algorithms/scene/toml/scene_description.hpp"
 
 namespace pellucid {
@@ -20,6 +26,7 @@ void parse_scene(std::string_view text, const std::filesystem::path& folder, Sce
   root.set_affected(std::nullopt);
   parse_materials(root, scene);
   parse_meshes(root, folder, scene);
+  parse_reliefs(root, folder, scene);
   parse_instances(root, scene);
   parse_forest(root, scene);
   parse_lights(root, scene);
@@ -30,6 +37,12 @@ void parse_scene(std::string_view text, const std::filesystem::path& folder, Sce
   root.finish();
 }
 
+void SceneDescription::warn(const TableReader& reader, std::string_view key, std::string_view message) {
+  const Place place = reader.place(key);
+  facts.warnings.push_back(
+      fmt::format("{}:{}:{}: {}.{}: {}", file.shown, place.line, place.column, reader.path(), key, message));
+}
+
 std::filesystem::path parse_file_name(TableReader& reader, std::string_view key, const std::filesystem::path& folder,
                                       SceneDescription& scene) {
   std::string reference;
@@ -37,6 +50,7 @@ std::filesystem::path parse_file_name(TableReader& reader, std::string_view key,
   return located(reader, key, [&] {
     std::filesystem::path path = resolve_asset(reference, folder);
     scene.files_read.emplace_back(reference, sha256_file(path));
+    scene.facts.files.push_back(path);
     return path;
   });
 }
@@ -72,12 +86,18 @@ void parse_environment(TableReader& root, const std::filesystem::path& folder, S
     reader->exclude("image", key);
   if (reader->has("image")) {
     const std::filesystem::path path = parse_file_name(*reader, "image", folder, scene);
-    ImageFile file = located(*reader, "image", [&] { return read_image(path); });
-    if (file.display_encoded) reader->fail("image", "an environment is scene-linear: an EXR file, not PNG");
-    for (const float v : file.image.pixels) {
-      if (!std::isfinite(v)) reader->fail("image", "it has a pixel that is not finite");
+    std::optional<EnvironmentLayout> layout;
+    if (reader->has("layout")) {
+      layout = static_cast<EnvironmentLayout>(
+          reader->choice("layout", {"lat_long", "cube_strip", "cube_cross", "mirror_ball", "angular"}, 0));
     }
-    environment.image = std::move(file.image);
+    PictureFile file = located(*reader, "image", [&] { return read_picture(path, no_layer); });
+    if (file.display_encoded) reader->fail("image", "an environment is scene-linear: an EXR file, not PNG");
+    std::vector<std::string> warnings;
+    environment.image =
+        located(*reader, "image", [&] { return to_lat_long(std::move(file), layout, kRadiance.max, warnings); });
+    for (const std::string& warning : warnings)
+      scene.warn(*reader, "image", warning);
   } else {
     reader->color("zenith", environment.zenith, kRadiance);
     reader->color("horizon", environment.horizon, kRadiance);

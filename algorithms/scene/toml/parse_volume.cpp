@@ -1,4 +1,8 @@
 #include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -55,14 +59,16 @@ void parse_voxel_file(TableReader& reader, const std::filesystem::path& folder, 
                       SceneDescription& scene) {
   const std::filesystem::path path = parse_file_name(reader, "file", folder, scene);
   std::optional<glm::dvec2> range;
-  if (reader.has("range")) reader.pair("range", range.emplace(0.0), {-1e30, 1e30}, false);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  if (reader.has("range")) reader.pair("range", range.emplace(0.0), {-kMost, kMost}, false);
   if (range && !(range->x < range->y)) reader.fail("range", fmt::format("[{}, {}] is empty", range->x, range->y));
-  volume.from_file = located(reader, "file", [&] { return load_volume_file(path); });
-  VolumeFile& file = *volume.from_file;
+  const VolumeFile file = located(reader, "file", [&] { return load_volume_file(path); });
   for (const std::filesystem::path& other : file.files) {
-    if (other != path) scene.files_read.emplace_back(other.filename().string(), sha256_file(other));
+    if (other == path) continue;
+    scene.files_read.emplace_back(other.filename().string(), sha256_file(other));
+    scene.facts.files.push_back(other);
   }
-  volume.file_range = located(reader, "file", [&] { return normalise(file, range); });
+  volume.from_file = located(reader, "file", [&] { return normalise(file, range); });
   volume.voxels = glm::dvec3(file.size);
   volume.size = file.spacing * glm::dvec3(file.size);
 }

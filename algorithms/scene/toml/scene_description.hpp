@@ -1,15 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/motion.hpp"
+#include "algorithms/scene/relief/patterns.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/toml/toml_reader.hpp"
 #include "algorithms/scene/volumes/volume_file.hpp"
@@ -60,6 +64,39 @@ struct InstanceDescription {
   Placement placement;
   glm::dvec3 scale{1.0}, tint{1.0};
   std::vector<glm::dvec3> cubes;  ///< never resized once it is read: parameters write the points
+  int relief = -1;
+};
+
+/// One height field of a relief.
+struct ReliefLayerDescription {
+  Pattern kind = Pattern::flat;
+  double low_m = -0.1, high_m = 0;
+  glm::dvec2 texels{256.0};
+  double seed = 1, columns = 4, rows = 8, joint = 0.12, frequency = 4, octaves = 4, roughness = 0.15, contrast = 0.4;
+  double level = 1, waves = 12, size_m = 1;
+  double share = 0.7, radius = 0.5, height_m = 0.01;  ///< of drops
+  double drops = 96, fall = 16;                       ///< of rain
+  Image heights, normals, colors;                     ///< from files, rows from the bottom; or empty
+  glm::dvec3 albedo{0.5};
+  double specular = 0, exponent = 50;
+};
+struct ReliefAirDescription {
+  double height_m = 0.1, ground_index = 1.0001, index = 1.0003;
+  bool exponential = false;
+  double falloff_m = 0.02, turbulence = 0, seed = 1;
+  glm::dvec3 texels{32, 32, 64};
+};
+struct ReliefDescription {
+  std::string name;
+  Place place;
+  glm::dvec2 tiling{1.0};
+  bool cut = true;
+  ReliefLayerDescription solid;
+  std::optional<ReliefLayerDescription> translucent;
+  double outside_index = 1, index = 1.33, intensification = 0;
+  glm::dvec3 half_depth_m{1e6}, scattering{0.0};
+  double anisotropy = 0;
+  std::optional<ReliefAirDescription> air;
 };
 
 struct LightDescription {
@@ -117,8 +154,7 @@ struct VolumeDescription {
   double near_m = 0.05, range_m = 1;
   double seed = 1, octaves = 4, frequency = 3, height_falloff = 3, contrast = 0.7, swirl = 0.5;
   double depth_gradient = 0.3, level = 0.9, wave = 0.01;
-  std::optional<VolumeFile> from_file;  ///< normalised; its values are moved into the scene when it is evaluated
-  glm::dvec2 file_range{0.0, 1.0};
+  std::optional<Densities> from_file;  ///< its values are moved into the scene when it is evaluated
 };
 
 struct EnvironmentDescription {
@@ -141,6 +177,7 @@ struct SceneDescription {
   std::string title, description, stand_in;
   std::deque<MeshDescription> meshes;
   std::deque<MaterialDescription> materials;
+  std::deque<ReliefDescription> reliefs;
   std::deque<InstanceDescription> instances;
   std::deque<LightDescription> lights;
   std::deque<ViewDescription> views;
@@ -153,6 +190,10 @@ struct SceneDescription {
   std::vector<DriveTarget> targets;
   std::vector<Affected> animated;                               ///< what changes with time
   std::vector<std::pair<std::string, std::string>> files_read;  ///< name in the scene file, SHA-256
+  LoadingFacts facts;
+
+  /// Adds the warning "s.toml:3:8: environment.image: …".
+  void warn(const TableReader&, std::string_view key, std::string_view message);
 
   SceneDescription() = default;
   SceneDescription(const SceneDescription&) = delete;
@@ -165,7 +206,10 @@ void parse_scene(std::string_view text, const std::filesystem::path& folder, Sce
 // The sections, one function each; called in this order by parse_scene().
 void parse_materials(TableReader& root, SceneDescription&);
 void parse_meshes(TableReader& root, const std::filesystem::path& folder, SceneDescription&);
+void parse_reliefs(TableReader& root, const std::filesystem::path& folder, SceneDescription&);
 void parse_instances(TableReader& root, SceneDescription&);
+/// Reads the key `relief` of an instance, whose mesh and material are known.
+void carry_relief(TableReader&, const SceneDescription&, InstanceDescription&);
 void parse_forest(TableReader& root, SceneDescription&);
 void parse_lights(TableReader& root, SceneDescription&);
 void parse_volume(TableReader& root, const std::filesystem::path& folder, SceneDescription&);
@@ -209,6 +253,9 @@ int find_named(TableReader& reader, std::string_view key, const Things& things, 
 /// other (near_m ≥ far_m).
 void evaluate(SceneDescription&, Affected, double time_s, Scene&);
 void evaluate_voxels(SceneDescription&, Scene&);
+/// The images and heights of a relief; and all else of it.
+void evaluate_relief_maps(const SceneDescription&, std::size_t index, double time_s, Scene&);
+void evaluate_relief(const SceneDescription&, std::size_t index, Scene&);
 /// The scattering at the voxels of a volume in a light's space; its box is left alone.
 void evaluate_scattering(const SceneDescription&, Scene&);
 void evaluate_transfer(const SceneDescription&, Scene&);

@@ -161,6 +161,7 @@ void SceneSource::evaluate_all(Scene& scene) {
   scene.stand_in = description_->stand_in;
   scene.meshes.resize(description_->meshes.size());
   scene.materials.resize(description_->materials.size());
+  scene.reliefs.resize(description_->reliefs.size());
   scene.instances.resize(description_->instances.size());
   scene.lights.resize(description_->lights.size());
   scene.views.resize(description_->views.size());

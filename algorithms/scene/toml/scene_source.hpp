@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/parameters.hpp"
@@ -20,6 +22,7 @@ class SceneSource {
   /// Evaluates the whole scene at the current values.
   void evaluate_all(Scene&);
   const ParameterTable& table() const { return table_; }
+  LoadingFacts& facts() { return description_->facts; }
   std::uint64_t revision() const { return revision_; }
   std::string content_hash() const;
 

@@ -64,6 +64,8 @@ enum class Part {
   mesh,
   forest,
   material,
+  relief_maps,
+  relief,
   instance,
   light,
   view,

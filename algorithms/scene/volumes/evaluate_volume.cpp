@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -118,9 +122,12 @@ void evaluate_voxels(SceneDescription& description, Scene& scene) {
   Volume& volume = *scene.volume;
   volume.name = from.name;
   volume.size = glm::ivec3(whole(from.voxels.x), whole(from.voxels.y), whole(from.voxels.z));
-  volume.file_range = glm::vec2(from.file_range);
   if (from.kind == VolumeKind::file) {
-    if (from.from_file) volume.density = std::move(from.from_file->values);
+    if (from.from_file) {
+      volume.density = std::move(from.from_file->values);
+      volume.file_range = glm::vec2(from.from_file->range);
+      description.facts.file_range = from.from_file->range;
+    }
     from.from_file.reset();
     return;
   }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -34,20 +34,23 @@ double header_number(const std::filesystem::path&, std::string_view field, std::
 /// … and a whole one that is not negative.
 int header_size(const std::filesystem::path&, std::string_view field, std::string_view text);
 
-/// How one voxel is written.
-struct VoxelType {
-  std::size_t bytes = 0;
-  float (*value)(const char* bytes, bool swapped) = nullptr;
-};
 enum class VoxelKind { floating, unsigned_integer, signed_integer };
 VoxelType voxel_type(VoxelKind, int bits);  ///< `bytes` is 0 when there is no such type
-std::vector<float> decode_voxels(std::string_view raw, VoxelType, bool swapped);
 
-/// The file's content behind `offset`.
-std::string read_behind(const std::filesystem::path&, std::uintmax_t offset);
+/// Where a header says that the voxels lie, and how they are written.
+struct VoxelBytes {
+  std::filesystem::path file;
+  std::uintmax_t offset = 0;
+  bool packed = false;      ///< by zlib or gzip
+  bool from_end = false;    ///< they end where the file ends, and what comes before them is skipped
+  bool may_follow = false;  ///< what comes behind them is left aside
+  VoxelType type;
+  bool swapped = false;
+};
+/// Checks the header against the file and reads them. `path` is the header's file, for errors.
+VolumeFile read_voxels(const std::filesystem::path& path, const VolumeHeader&, const VoxelBytes&);
 
-/// Unpacks zlib's or gzip's format piece by piece. Throws when it is damaged or ends too soon.
-void unpack(const std::filesystem::path&, std::string_view packed,
-            const std::function<void(std::string_view)>& take_piece);
+/// The file that a header names beside itself. Lists and numbered slices are refused; `%` may be a part of a name.
+std::filesystem::path data_file(const std::filesystem::path& path, const std::string& name);
 
 }  // namespace pellucid

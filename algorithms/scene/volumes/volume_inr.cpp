@@ -1,7 +1,11 @@
 #include <bit>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -82,13 +86,7 @@ VolumeFile load_inr(const fs::path& path) {
   header.components = header_size(path, "VDIM", text.text("VDIM", "1"));
   const VoxelType type = type_of(path, text);
   const bool swapped = is_swapped(path, text);
-  const std::uintmax_t bytes = fs::file_size(path) - text.bytes;
-  check_header(path, header, bytes);
-  if (bytes != header.count() * type.bytes) {
-    fail_volume(path,
-                fmt::format("{} bytes of voxels where its header promises {}", bytes, header.count() * type.bytes));
-  }
-  return {header.size, header.spacing, decode_voxels(read_behind(path, text.bytes), type, swapped), {}};
+  return read_voxels(path, header, {.file = path, .offset = text.bytes, .type = type, .swapped = swapped});
 }
 
 }  // namespace pellucid

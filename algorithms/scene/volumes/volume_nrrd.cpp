@@ -1,53 +1,116 @@
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "algorithms/scene/volumes/volume_formats.hpp"
 
-/// NRRD: lines "field: value" up to an empty one, then the voxels or, detached, their file. Ours, because vtkNrrdReader
-/// of VTK 9.1 takes a first axis of up to nine voxels for components and reads only one slice of a packed file.
+/// NRRD (teem.sourceforge.net/nrrd/format.html): lines "field: value" up to an empty one, then the voxels or, detached,
+/// their file. Ours, because vtkNrrdReader of VTK 9.1 takes a first axis of up to nine voxels for components and reads
+/// only one slice of a packed file. A field that the format does not know is an error: it may be one that matters.
 namespace pellucid {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-using Fields = std::map<std::string, std::string>;
+/// Every field of the format, without blanks ("data file" and "datafile" are the same) and in lower case.
+constexpr std::array kFields = {"dimension",
+                                "type",
+                                "blocksize",
+                                "encoding",
+                                "endian",
+                                "content",
+                                "min",
+                                "max",
+                                "oldmin",
+                                "oldmax",
+                                "datafile",
+                                "lineskip",
+                                "byteskip",
+                                "number",
+                                "sampleunits",
+                                "sizes",
+                                "spacings",
+                                "thicknesses",
+                                "axismins",
+                                "axismaxs",
+                                "centers",
+                                "centerings",
+                                "labels",
+                                "units",
+                                "kinds",
+                                "space",
+                                "spacedimension",
+                                "spaceunits",
+                                "spaceorigin",
+                                "spacedirections",
+                                "measurementframe"};
 
 struct NrrdHeader {
-  Fields fields;
+  std::map<std::string, std::string> fields;
   std::uintmax_t bytes = 0;  ///< up to the voxels
 
+  bool has(const std::string& field) const { return fields.contains(field); }
   std::string text(const std::string& field, std::string otherwise = {}) const {
     const auto found = fields.find(field);
     return found == fields.end() ? otherwise : found->second;
   }
 };
 
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+void read_field(const fs::path& path, const std::string& line, int number, NrrdHeader& header) {
+  if (line.starts_with('#')) return;
+  const auto colon = line.find(':');
+  if (colon == std::string::npos) fail_volume(path, fmt::format("line {} of its header is no 'field: value'", number));
+  if (line.compare(colon, 2, ":=") == 0) return;  // key and value of the user's
+  const std::string shown = line.substr(0, colon);
+  std::string field = lower(shown);
+  std::erase(field, ' ');
+  if (std::find(kFields.begin(), kFields.end(), field) == kFields.end())
+    fail_volume(path, fmt::format("'{}' in line {} of its header is no field of NRRD", shown, number));
+  const auto begin = line.find_first_not_of(" \t", colon + 1);
+  const std::string value =
+      begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(" \t") + 1 - begin);
+  if (!header.fields.emplace(field, value).second)
+    fail_volume(path, fmt::format("its header states '{}' twice", shown));
+}
+
 NrrdHeader read_header(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   NrrdHeader header;
   std::string line;
   constexpr std::uintmax_t kLongestHeader = 1 << 20;
-  for (bool first = true; header.bytes < kLongestHeader && std::getline(file, line); first = false) {
+  for (int number = 1; header.bytes < kLongestHeader && std::getline(file, line); ++number) {
     header.bytes += line.size() + (file.eof() ? 0 : 1);
     if (line.ends_with('\r')) line.pop_back();
-    if (first && !line.starts_with("NRRD")) fail_volume(path, "it does not begin with 'NRRD'");
-    if (line.empty()) return header;
-    const auto colon = line.find(": ");
-    if (line.starts_with('#') || colon == std::string::npos) continue;  // also "key:=value", which means nothing to us
-    std::string field = line.substr(0, colon);
-    std::erase(field, ' ');  // "data file" and "datafile" are the same
-    const auto begin = line.find_first_not_of(' ', colon + 2);
-    if (begin != std::string::npos) {
-      header.fields[field] = line.substr(begin, line.find_last_not_of(" \t") + 1 - begin);
+    if (number == 1) {
+      if (!line.starts_with("NRRD")) fail_volume(path, "it does not begin with 'NRRD'");
+      continue;
     }
+    if (line.empty()) return header;
+    read_field(path, line, number, header);
   }
-  if (!header.fields.contains("datafile")) fail_volume(path, "its header has no end");
+  if (!header.has("datafile")) fail_volume(path, "its header has no end");
   return header;
 }
 
@@ -56,42 +119,94 @@ std::vector<std::string> words(const std::string& text) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// "(a,b,c)": the distance between voxels is its length.
-double length_of(const fs::path& path, std::string text) {
-  if (text.size() < 2 || text.front() != '(' || text.back() != ')') {
-    fail_volume(path, fmt::format("'{}' is no vector of space directions", text));
+std::vector<std::string> three(const fs::path& path, const NrrdHeader& text, const std::string& field,
+                               std::string_view shown) {
+  std::vector<std::string> all = words(text.text(field));
+  if (all.size() != 3) fail_volume(path, fmt::format("{} {} where 3 are needed", all.size(), shown));
+  return all;
+}
+
+glm::dvec3 three_numbers(const fs::path& path, const NrrdHeader& text, const std::string& field,
+                         std::string_view shown) {
+  const std::vector<std::string> all = three(path, text, field, shown);
+  return {header_number(path, shown, all[0]), header_number(path, shown, all[1]), header_number(path, shown, all[2])};
+}
+
+/// "(a, b, c)" three times; the distance between voxels is the vector's length.
+glm::dvec3 lengths_of_directions(const fs::path& path, const std::string& text) {
+  std::vector<double> lengths;
+  std::size_t at = 0;
+  while ((at = text.find_first_not_of(" \t", at)) != std::string::npos) {
+    const std::size_t end = text.find(')', at);
+    if (text[at] != '(' || end == std::string::npos)
+      fail_volume(path, fmt::format("'{}' is no vector of space directions", text.substr(at)));
+    std::istringstream numbers(text.substr(at + 1, end - at - 1));
+    double square = 0;
+    for (std::string number; std::getline(numbers, number, ',');) {
+      const std::vector<std::string> word = words(number);
+      const double v = header_number(path, "space directions", word.size() == 1 ? word[0] : number);
+      square += v * v;
+    }
+    lengths.push_back(std::sqrt(square));
+    at = end + 1;
   }
-  std::istringstream numbers(text.substr(1, text.size() - 2));
-  double square = 0;
-  for (std::string number; std::getline(numbers, number, ',');) {
-    const double v = header_number(path, "space directions", number);
-    square += v * v;
+  if (lengths.size() != 3) fail_volume(path, fmt::format("{} space directions where 3 are needed", lengths.size()));
+  return {lengths[0], lengths[1], lengths[2]};
+}
+
+/// The spacing that the ends of the axes imply; what that is depends on whether they lie in or between voxels.
+std::optional<glm::dvec3> spacing_of_ends(const fs::path& path, const NrrdHeader& text, const glm::ivec3& size) {
+  if (!text.has("axismins") || !text.has("axismaxs")) return std::nullopt;
+  const std::string field = text.has("centers") ? "centers" : "centerings";
+  if (!text.has(field))
+    fail_volume(path, "axis mins and axis maxs tell the spacing only with centers, which its header does not state");
+  const std::vector<std::string> centers = three(path, text, field, "centers");
+  const glm::dvec3 low = three_numbers(path, text, "axismins", "axis mins");
+  const glm::dvec3 high = three_numbers(path, text, "axismaxs", "axis maxs");
+  glm::dvec3 spacing(1.0);
+  for (int c = 0; c < 3; ++c) {
+    const std::string center = lower(centers[static_cast<std::size_t>(c)]);
+    if (center != "cell" && center != "node")
+      fail_volume(path,
+                  fmt::format("'{}' of its centers is neither cell nor node", centers[static_cast<std::size_t>(c)]));
+    spacing[c] = (high[c] - low[c]) / std::max(center == "cell" ? size[c] : size[c] - 1, 1);
   }
-  return std::sqrt(square);
+  return spacing;
+}
+
+void check_agreement(const fs::path& path, const glm::dvec3& stated, const glm::dvec3& implied, std::string_view of,
+                     std::string_view other) {
+  for (int c = 0; c < 3; ++c) {
+    if (std::abs(stated[c] - implied[c]) <= 1e-3 * std::abs(stated[c])) continue;
+    fail_volume(path, fmt::format("its {} say {} along {}, its {} {}", of, stated[c], "xyz"[c], other, implied[c]));
+  }
+}
+
+glm::dvec3 spacing_of(const fs::path& path, const NrrdHeader& text, const glm::ivec3& size) {
+  std::optional<glm::dvec3> spacings, directions;
+  if (text.has("spacings")) spacings = three_numbers(path, text, "spacings", "spacings");
+  if (text.has("spacedirections")) directions = lengths_of_directions(path, text.text("spacedirections"));
+  if (spacings && directions) check_agreement(path, *spacings, *directions, "spacings", "space directions");
+  const std::optional<glm::dvec3> stated = spacings ? spacings : directions;
+  const std::optional<glm::dvec3> ends = spacing_of_ends(path, text, size);
+  if (stated && ends) check_agreement(path, *stated, *ends, "spacings", "axis mins and maxs");
+  return stated ? *stated : ends.value_or(glm::dvec3(1.0));
 }
 
 VolumeHeader shape_of(const fs::path& path, const NrrdHeader& text) {
-  const auto three = [&](const std::string& field, const std::string& shown) {
-    std::vector<std::string> all = words(text.text(field));
-    if (all.size() != 3) fail_volume(path, fmt::format("{} {} where 3 are needed", all.size(), shown));
-    return all;
-  };
   VolumeHeader header;
+  if (!text.has("dimension")) fail_volume(path, "its header states no dimension");
   if (const std::string dimension = text.text("dimension"); dimension != "3") {
     fail_volume(path, fmt::format("its dimension is '{}'; volumes have 3", dimension));
   }
-  const auto sizes = three("sizes", "sizes");
+  const auto sizes = three(path, text, "sizes", "sizes");
   for (int c = 0; c < 3; ++c)
     header.size[c] = header_size(path, "sizes", sizes[static_cast<std::size_t>(c)]);
-  if (text.fields.contains("spacings")) {
-    const auto spacings = three("spacings", "spacings");
-    for (int c = 0; c < 3; ++c)
-      header.spacing[c] = header_number(path, "spacings", spacings[static_cast<std::size_t>(c)]);
-  } else if (text.fields.contains("spacedirections")) {
-    const auto directions = three("spacedirections", "space directions");
-    for (int c = 0; c < 3; ++c)
-      header.spacing[c] = length_of(path, directions[static_cast<std::size_t>(c)]);
+  for (const std::string& kind : words(lower(text.text("kinds")))) {
+    if (kind != "domain" && kind != "space" && kind != "???" && kind != "none")
+      fail_volume(path, fmt::format("an axis of kind '{}' is none of space", kind));
   }
+  header.spacing = spacing_of(path, text, header.size);
   return header;
 }
 
@@ -115,33 +230,17 @@ VoxelType type_of(const fs::path& path, const std::string& name) {
       {VoxelKind::unsigned_integer, 64, ",ulonglong,unsigned long long,unsigned long long int,uint64,uint64_t,"},
   };
   for (const Named& type : kTypes) {
-    if (type.names.find("," + name + ",") != std::string_view::npos) return voxel_type(type.kind, type.bits);
+    if (type.names.find("," + lower(name) + ",") != std::string_view::npos) return voxel_type(type.kind, type.bits);
   }
   fail_volume(path, fmt::format("voxels of type '{}' are not read", name));
 }
 
 bool is_swapped(const fs::path& path, const NrrdHeader& header, const VoxelType& type) {
-  const std::string endian = header.text("endian");
+  const std::string endian = lower(header.text("endian"));
   if (endian == "little" || endian == "big")
     return (endian == "little") != (std::endian::native == std::endian::little);
   if (type.bytes > 1) fail_volume(path, "its header does not tell the endian of its voxels");
   return false;
-}
-
-/// Where the voxels lie: a file and an offset in it.
-std::pair<fs::path, std::uintmax_t> data_place(const fs::path& path, const NrrdHeader& header) {
-  for (const char* skip : {"lineskip", "byteskip"}) {
-    if (header.text(skip, "0") != "0") fail_volume(path, fmt::format("a {} other than 0 is not read", skip));
-  }
-  const std::string name = header.text("datafile");
-  if (name.empty()) return {path, header.bytes};
-  if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
-    fail_volume(path, "its voxels lie in several files; one is read");
-  }
-  const fs::path file = path.parent_path() / name;
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) fail_volume(path, fmt::format("its data file '{}' is missing", file.string()));
-  return {file, 0};
 }
 
 }  // namespace
@@ -149,36 +248,21 @@ std::pair<fs::path, std::uintmax_t> data_place(const fs::path& path, const NrrdH
 VolumeFile load_nrrd(const fs::path& path) {
   const NrrdHeader text = read_header(path);
   const VolumeHeader header = shape_of(path, text);
-  const VoxelType type = type_of(path, text.text("type"));
-  const bool swapped = is_swapped(path, text, type);
-  const std::string encoding = text.text("encoding");
-  const bool packed = encoding == "gzip" || encoding == "gz";
-  if (!packed && encoding != "raw") {
-    fail_volume(path, fmt::format("its encoding is '{}'; raw and gzip are read", encoding));
+  VoxelBytes place;
+  place.type = type_of(path, text.text("type"));
+  place.swapped = is_swapped(path, text, place.type);
+  const std::string encoding = lower(text.text("encoding"));
+  place.packed = encoding == "gzip" || encoding == "gz";
+  if (!place.packed && encoding != "raw") {
+    fail_volume(path, fmt::format("its encoding is '{}'; raw and gzip are read", text.text("encoding")));
   }
-  const auto [file, offset] = data_place(path, text);
-  const std::uintmax_t bytes = fs::file_size(file) - offset;
-  check_header(path, header, bytes);
-  const std::size_t promised = header.count() * type.bytes;
-  const auto check_bytes = [&](std::uintmax_t found) {
-    if (found == promised) return;
-    fail_volume(path, fmt::format("{} bytes of voxels where its header promises {}", found, promised));
-  };
-
-  std::string raw;
-  if (packed) {
-    unpack(path, read_behind(file, offset), [&](std::string_view piece) {
-      raw += piece;
-      if (raw.size() > promised) check_bytes(raw.size());
-    });
-    check_bytes(raw.size());
-  } else {
-    check_bytes(bytes);
-    raw = read_behind(file, offset);
+  for (const auto& [field, shown] : {std::pair("lineskip", "line skip"), std::pair("byteskip", "byte skip")}) {
+    if (text.text(field, "0") != "0") fail_volume(path, fmt::format("a {} other than 0 is not read", shown));
   }
-  VolumeFile volume{header.size, header.spacing, decode_voxels(raw, type, swapped), {}};
-  if (file != path) volume.files.push_back(file);
-  return volume;
+  const std::string name = text.text("datafile");
+  place.file = name.empty() ? path : data_file(path, name);
+  place.offset = name.empty() ? text.bytes : 0;
+  return read_voxels(path, header, place);
 }
 
 }  // namespace pellucid

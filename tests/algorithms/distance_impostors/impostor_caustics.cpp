@@ -1,6 +1,11 @@
 // Caustics: where the photons' power ends.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -8,7 +13,7 @@
 
 #include "algorithms/distance_impostors/caustics.hpp"
 #include "algorithms/distance_impostors/light_map_chart.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "tests/algorithms/rendered.hpp"
 

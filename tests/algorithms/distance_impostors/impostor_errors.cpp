@@ -2,6 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -87,7 +93,7 @@ Classified draw(Scene scene, test::Values values) {
   return out;
 }
 
-const NativeMap& find(const Classified& drawn, const std::string& name) {
+const NativeMap& find(const Classified& drawn, std::string_view name) {
   return *std::find_if(drawn.maps.begin(), drawn.maps.end(), [&](const NativeMap& map) { return map.name == name; });
 }
 

@@ -1,9 +1,16 @@
 // Light through objects onto surfaces, against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "algorithms/reference/photon_map.hpp"
-#include "algorithms/reference/photons.hpp"
+#include "algorithms/reference/photons/photon_map.hpp"
+#include "algorithms/reference/photons/photons.hpp"
 #include "algorithms/scene/shapes/noise.hpp"
 #include "gl/error.hpp"
 #include "tests/algorithms/reference/optical_scenes.hpp"

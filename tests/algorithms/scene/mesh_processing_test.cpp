@@ -4,13 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
+#include "tests/algorithms/scene/stored_voxels.hpp"
 
 namespace pellucid {
 namespace {
@@ -97,6 +103,7 @@ TEST(MeshProcessing, RefusesWhatItCannotDo) {
 
 VolumeFile balls(int n, std::initializer_list<glm::dvec4> center_radius) {
   VolumeFile volume;
+  std::vector<float> values;
   volume.size = glm::ivec3(n);
   volume.spacing = {1.0, 1.0, 2.0};
   for (int z = 0; z < n; ++z) {
@@ -105,10 +112,11 @@ VolumeFile balls(int n, std::initializer_list<glm::dvec4> center_radius) {
         double best = -1e3;
         for (const glm::dvec4& ball : center_radius)
           best = std::max(best, ball.w - glm::length(glm::dvec3(x, y, 2.0 * z) - glm::dvec3(ball)));
-        volume.values.push_back(static_cast<float>(best));
+        values.push_back(static_cast<float>(best));
       }
     }
   }
+  test::store(volume, std::move(values));
   return volume;
 }
 
@@ -154,11 +162,11 @@ TEST_F(MeshKeys, CloseAndSubdivide) {
 
 TEST_F(MeshKeys, IsosurfaceOfAVolumeFile) {
   std::string raw;
-  for (const float value : balls(24, {{11, 11, 22, 9}}).values)
+  for (const double value : test::values_of(balls(24, {{11, 11, 22, 9}})))
     raw.append(reinterpret_cast<const char*>(&value), sizeof value);
   write("ball.raw", raw);
   write("ball.mhd",
-        "ObjectType = Image\nNDims = 3\nDimSize = 24 24 24\nElementSpacing = 1 1 2\nElementType = MET_FLOAT\n"
+        "ObjectType = Image\nNDims = 3\nDimSize = 24 24 24\nElementSpacing = 1 1 2\nElementType = MET_DOUBLE\n"
         "ElementDataFile = ball.raw\n");
   const Scene scene = load_scene(scene_with("file = \"ball.mhd\"\nisosurface = 0\nrefine = 2\nfit_m = 1\n"));
   EXPECT_NEAR(signed_volume(scene.meshes.at(0)), std::numbers::pi / 6.0, 0.02);

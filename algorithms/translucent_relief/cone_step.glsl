@@ -1,0 +1,43 @@
+// Rays against a height field through a map of empty cones (Dummer 2006), which cone_map() makes (height_pyramid.cpp).
+// The includer defines above() of search.glsl and cone_at().
+
+// As linear_crossing(), from above only, through a map of empty cones (Dummer 2006): `cone` gives their width over their
+// height at a point of the mesh's texture, both in units of the map; `range_m` is the layer's height and `tiles` as often
+// as the map repeats. The chord of the last bracket follows where a step ends in the surface.
+float cone_at(int layer, vec2 uv);
+float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, float bias, int steps, int refinements,
+                    inout int taken) {
+  if (!(range.x < range.y)) return -1.0;
+  float across = length(ray.direction.xy * ray.uv_per_metre * tiles);  // of the map, for each metre
+  float upward = ray.direction.z / range_m;
+  float least = (range.y - range.x) / 2048.0;
+  float before = range.x, height_before = 0.0, t = range.x;
+  for (int i = 0; i < steps; ++i) {
+    float height = above(layer, ray, t);
+    ++taken;
+    if (height < -bias && t > range.x) {
+      for (int k = 0; k < refinements; ++k) {
+        float middle = 0.5 * (before + t), at_middle = above(layer, ray, middle);
+        ++taken;
+        if (at_middle < 0.0) {
+          t = middle;
+          height = at_middle;
+        } else {
+          before = middle;
+          height_before = at_middle;
+        }
+      }
+      return before + (t - before) * (height_before / (height_before - height));
+    }
+    before = t;
+    height_before = max(height, 0.0);
+    float closing = across / max(cone_at(layer, uv_at(ray, t)), 1e-4) - upward;
+    float step = closing > 0.0 ? height_before / range_m / closing : range.y;
+    t += max(step, least);
+    if (t >= range.y) {
+      t = range.y;
+      if (above(layer, ray, t) >= -bias) return -1.0;
+    }
+  }
+  return upward < 0.0 ? t : -1.0;  // so near that the steps gave out; upwards it runs along the surface
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "algorithms/scene/images/image.hpp"
+
+/// What accelerated searches precompute of a height field.
+namespace pellucid::translucent_relief {
+
+/// Two channels, the greatest and the least height: first of the cells between four neighbouring texel centres, cell
+/// (x, y) having texel (x, y) at its lower corner; then of 2 × 2 cells of the level before, down to one. The sides are
+/// powers of two, or InputError.
+std::vector<Image> height_pyramid(const Image& heights);
+
+/// One channel: at each texel the ratio, width in the map's unit over height, of the widest empty cone that stands
+/// there on its apex (Dummer 2006), at most 1. A map with a side above `kMostConeTexels` is first reduced by maxima.
+inline constexpr int kMostConeTexels = 256;
+Image cone_map(const Image& heights);
+
+}  // namespace pellucid::translucent_relief

@@ -1,0 +1,122 @@
+// The two layers' maps. Heights are metres along the mesh's normal, 0 at the mesh.
+#include "algorithms/translucent_relief/search.glsl"
+#include "algorithms/translucent_relief/cone_step.glsl"
+#include "algorithms/translucent_relief/max_mip.glsl"
+
+layout(binding = 3) uniform sampler2D solid_heights;
+layout(binding = 5) uniform sampler2D solid_normals;
+layout(binding = 7) uniform sampler2D solid_colors;
+uniform vec2 solid_range;  // the height of 0, and what is added at 1
+uniform bool solid_normal_map;
+#ifdef TWO_LAYERS
+layout(binding = 4) uniform sampler2D medium_heights;
+layout(binding = 6) uniform sampler2D medium_normals;
+uniform vec2 medium_range;
+uniform bool medium_normal_map;
+#endif
+// Of the search: greatest and least heights by level, or empty cones.
+layout(binding = 8) uniform sampler2D solid_acceleration;
+layout(binding = 9) uniform sampler2D medium_acceleration;
+uniform vec2 tiling;
+uniform bool cut;
+
+const int kSolid = 0, kMedium = 1, kEither = 2;
+
+float solid_height(vec2 uv) { return solid_range.x + solid_range.y * textureLod(solid_heights, uv * tiling, 0.0).r; }
+float medium_height(vec2 uv) {
+#ifdef TWO_LAYERS
+  return medium_range.x + medium_range.y * textureLod(medium_heights, uv * tiling, 0.0).r;
+#else
+  return -1e9;
+#endif
+}
+
+float above(int layer, Ray ray, float t) {
+  vec2 uv = uv_at(ray, t);
+  float height;
+  if (layer == kSolid) height = solid_height(uv);
+  else if (layer == kMedium) height = medium_height(uv);
+  else height = max(solid_height(uv), medium_height(uv));
+  return z_at(ray, t) - height;
+}
+
+vec2 extremes(int layer, ivec2 cell, int level) {
+#ifdef TWO_LAYERS
+  if (layer == kMedium) {
+    ivec2 size = max(textureSize(medium_heights, 0) >> level, ivec2(1));
+    return medium_range.x + medium_range.y * texelFetch(medium_acceleration, cell & (size - 1), level).rg;
+  }
+#endif
+  ivec2 size = max(textureSize(solid_heights, 0) >> level, ivec2(1));
+  return solid_range.x + solid_range.y * texelFetch(solid_acceleration, cell & (size - 1), level).rg;
+}
+ivec2 map_size(int layer) {
+#ifdef TWO_LAYERS
+  if (layer == kMedium) return textureSize(medium_heights, 0);
+#endif
+  return textureSize(solid_heights, 0);
+}
+int pyramid_top(int layer) {
+  ivec2 size = map_size(layer);
+  return findMSB(max(size.x, size.y));
+}
+vec4 corners(int layer, ivec2 cell) {
+  ivec2 last = map_size(layer) - 1;
+  ivec2 a = cell & last, b = (cell + 1) & last;
+#ifdef TWO_LAYERS
+  if (layer == kMedium) {
+    return medium_range.x + medium_range.y * vec4(texelFetch(medium_heights, a, 0).r,
+                                                  texelFetch(medium_heights, ivec2(b.x, a.y), 0).r,
+                                                  texelFetch(medium_heights, ivec2(a.x, b.y), 0).r,
+                                                  texelFetch(medium_heights, b, 0).r);
+  }
+#endif
+  return solid_range.x + solid_range.y * vec4(texelFetch(solid_heights, a, 0).r,
+                                              texelFetch(solid_heights, ivec2(b.x, a.y), 0).r,
+                                              texelFetch(solid_heights, ivec2(a.x, b.y), 0).r,
+                                              texelFetch(solid_heights, b, 0).r);
+}
+float cone_at(int layer, vec2 uv) {
+#ifdef TWO_LAYERS
+  if (layer == kMedium) return textureLod(medium_acceleration, uv * tiling, 0.0).r;
+#endif
+  return textureLod(solid_acceleration, uv * tiling, 0.0).r;
+}
+float range_of(int layer) {
+#ifdef TWO_LAYERS
+  if (layer == kMedium) return medium_range.y;
+#endif
+  return solid_range.y;
+}
+
+// A little more than the heights take, so that the lowest of them is found.
+vec2 bounds_of(int layer) {
+  vec2 solid = vec2(solid_range.x, solid_range.x + solid_range.y);
+  vec2 bounds = solid;
+#ifdef TWO_LAYERS
+  vec2 medium = vec2(medium_range.x, medium_range.x + medium_range.y);
+  if (layer == kMedium) bounds = medium;
+  else if (layer == kEither) bounds = vec2(min(solid.x, medium.x), max(solid.y, medium.y));
+#endif
+  return vec2(bounds.x - 1e-3 * (bounds.y - bounds.x), bounds.y);
+}
+
+vec2 clip_to_layer(int layer, Ray ray, float from) {
+  vec2 bounds = bounds_of(layer);
+  return clip_ray(ray, bounds.x, bounds.y, cut, from);
+}
+
+// Unit normal from a texel: of a normal map, or of the slopes of heights.
+vec3 normal_of(vec4 texel, bool normal_map, float range, vec2 uv_per_metre) {
+  return normalize(normal_map ? texel.xyz : vec3(-range * texel.xy * tiling * uv_per_metre, 1.0));
+}
+vec3 solid_normal(vec2 uv, vec2 uv_per_metre) {
+  return normal_of(textureLod(solid_normals, uv * tiling, 0.0), solid_normal_map, solid_range.y, uv_per_metre);
+}
+vec3 medium_normal(vec2 uv, vec2 uv_per_metre) {
+#ifdef TWO_LAYERS
+  return normal_of(textureLod(medium_normals, uv * tiling, 0.0), medium_normal_map, medium_range.y, uv_per_metre);
+#else
+  return vec3(0.0, 0.0, 1.0);
+#endif
+}

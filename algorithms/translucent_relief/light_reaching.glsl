@@ -1,0 +1,69 @@
+// Light on its way to a point between or on the layers (Timonen, Sec. 3.1, Algorithm 2). C++ twin, by exact hits:
+// algorithms/reference/relief_tracer.cpp.
+#include "algorithms/shaders/optics.glsl"
+#include "algorithms/translucent_relief/layers.glsl"
+
+uniform float outside_index;  // n1
+uniform float index;          // n2
+uniform vec3 absorption;      // [1/m]
+uniform vec4 step_counts;    // of view, reflected, refracted and light rays
+uniform vec4 refinements;  // whole numbers, both
+uniform float steps_at_normal;  // share of the steps that a ray along the normal takes
+uniform int boundaries;         // of the medium, that a light ray may pass
+
+const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
+ivec4 taken = ivec4(0);  // heights asked for, by kind of ray
+
+int steps_of(int kind, Ray ray) {
+  float share = mix(1.0, steps_at_normal, abs(ray.direction.z));
+  return max(1, int(ceil(share * step_counts[kind])));
+}
+
+float find_crossing(int layer, Ray ray, float from, float side, int kind) {
+  int count = 0;
+  float t;
+  vec2 range = clip_to_layer(layer, ray, from);
+#if SEARCH == 1
+  t = max_mip_crossing(layer, ray, tiling, range, side, 16 * int(step_counts[kind]), count);
+#else
+  int steps = steps_of(kind, ray), halvings = int(refinements[kind]);
+  vec2 bounds = bounds_of(layer);
+  float bias = 1e-5 * (bounds.y - bounds.x);
+#if SEARCH == 2
+  if (side > 0.0 && layer != kEither)
+    t = cone_crossing(layer, ray, tiling, range_of(layer), range, bias, steps, halvings, count);
+  else
+#endif
+    t = linear_crossing(layer, ray, range, side, bias, steps, halvings, count);
+#endif
+  taken[kind] += count;
+  return t;
+}
+
+// Share of the light from `to_light` that reaches `p`, which lies on `side` of the medium's surface: 0 behind the solid,
+// else the refracted shares of all boundaries on the way, and what absorption leaves. Rays go straight, as in the paper.
+vec3 light_reaching(Ray frame, vec3 p, vec3 to_light, float side) {
+  if (to_light.z <= 0.0) return vec3(0.0);
+  Ray ray = Ray(p, to_light, frame.uv, frame.uv_per_metre);
+#ifdef OCCLUSION
+  if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) return vec3(0.0);
+#ifdef TWO_LAYERS
+  float share = 1.0, inside = 0.0, from = 0.0;
+  for (int i = 0; i < boundaries; ++i) {
+    float t = find_crossing(kMedium, ray, from, side, kLight);
+    if (t < 0.0) break;
+    float cosine = abs(dot(to_light, medium_normal(uv_at(ray, t), ray.uv_per_metre)));
+    share *= 1.0 - fresnel_dielectric(cosine, side < 0.0 ? outside_index / index : index / outside_index);
+    if (side < 0.0) inside += t - from;
+    from = t;
+    side = -side;
+  }
+  if (side < 0.0) inside += max(clip_to_layer(kMedium, ray, from).y - from, 0.0);
+#ifdef ABSORPTION
+  return share * transmitted(absorption, inside);
+#endif
+  return vec3(share);
+#endif
+#endif
+  return vec3(1.0);
+}

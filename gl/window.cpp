@@ -1,0 +1,95 @@
+#include "gl/window.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "gl/context.hpp"
+#include "gl/current_context.hpp"
+#include "gl/error.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace pellucid::gl {
+
+namespace {
+
+std::string glfw_reason() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "no reason given";
+}
+
+}  // namespace
+
+bool display_named() {
+  const auto named = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0';
+  };
+  return named("DISPLAY") || named("WAYLAND_DISPLAY");
+}
+
+Window::Window(const WindowOptions& options) {
+  if (glfwInit() == GLFW_FALSE) throw RuntimeError(fmt::format("there is no display: {}", glfw_reason()));
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+  glfwWindowHint(GLFW_STENCIL_BITS, 8);  // NanoVG fills with it
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {
+    const std::string reason = glfw_reason();
+    glfwTerminate();
+    throw RuntimeError(fmt::format("the display gives no window with OpenGL 4.5: {}", reason));
+  }
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  adopt_current_context();
+}
+
+Window::~Window() {
+  detail::clear_current();
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void Window::show() {
+  glfwShowWindow(window_);
+}
+
+void Window::swap_buffers() {
+  glfwSwapBuffers(window_);
+}
+
+bool Window::should_close() const {
+  return glfwWindowShouldClose(window_) == GLFW_TRUE;
+}
+
+void Window::wait_events(std::optional<double> seconds) {
+  if (!seconds) {
+    glfwWaitEvents();
+  } else if (*seconds <= 0) {
+    glfwPollEvents();
+  } else {
+    glfwWaitEventsTimeout(*seconds);
+  }
+}
+
+void Window::wake() {
+  glfwPostEmptyEvent();
+}
+
+float Window::content_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::max({x, y, 0.5F});
+}
+
+}  // namespace pellucid::gl

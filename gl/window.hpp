@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+struct GLFWwindow;
+
+namespace pellucid::gl {
+
+struct WindowOptions {
+  std::string title;
+  int width = 1280;  ///< in screen coordinates
+  int height = 800;
+};
+
+/// A window with an OpenGL 4.5 core context through EGL, current on construction; the only user of GLFW. Its callbacks
+/// are the caller's to set, over `handle()`. Throws RuntimeError with the reason when there is no display.
+class Window {
+ public:
+  explicit Window(const WindowOptions&);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  GLFWwindow* handle() const { return window_; }
+  void show();
+  void swap_buffers();
+  bool should_close() const;
+  /// Sleeps until there is an event, at most `seconds` when given, and runs the callbacks.
+  static void wait_events(std::optional<double> seconds);
+  /// Wakes wait_events() from any thread.
+  static void wake();
+  /// The monitor's scale: 1 at 96 dots per inch, fractions too.
+  float content_scale() const;
+
+ private:
+  GLFWwindow* window_ = nullptr;
+};
+
+/// True where a display is named in the environment; false means that a Window cannot open.
+bool display_named();
+
+}  // namespace pellucid::gl

@@ -1,0 +1,187 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gl/window.hpp"
+#include "sandbox/viewer/app/journal.hpp"
+#include "sandbox/viewer/app/panel_view.hpp"
+#include "sandbox/viewer/app/viewer.hpp"
+#include "sandbox/viewer/compare/flip_job.hpp"
+#include "sandbox/viewer/compare/second.hpp"
+#include "sandbox/viewer/compare/statistics.hpp"
+#include "sandbox/viewer/display/panel_layer.hpp"
+#include "sandbox/viewer/display/picture_view.hpp"
+#include "sandbox/viewer/live/file_watch.hpp"
+#include "sandbox/viewer/live/sweep_here.hpp"
+#include "sandbox/viewer/out/tev_client.hpp"
+#include "sandbox/viewer/panel/controls.hpp"
+#include "sandbox/viewer/state/bookmarks.hpp"
+#include "sandbox/viewer/state/random_tweaks.hpp"
+
+namespace pellucid::sandbox {
+
+/// Something the user does with one key; the page of keys and the panel's buttons come from the same list.
+struct Action {
+  int key = 0, modifiers = 0;
+  std::string keys;     ///< as the page of keys writes it: "Ctrl+S"
+  std::string meaning;  ///< one line
+  std::function<void()> run;
+};
+
+/// What is drawn in place of the picture.
+enum class Layer { picture, flip, native };
+
+/// The times of one frame, for the graph.
+struct FrameFigures {
+  double frame_ms = 0, shown_s = 0;
+  std::vector<std::pair<std::string, double>> pass_ms;
+};
+inline constexpr std::size_t kTimesKept = 120;
+
+/// The window: what it shows, and what its events do.
+class App {
+ public:
+  explicit App(const ViewerOptions&);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+  /// The exit status: 0, or 1 when random tweaking found a fault.
+  int run();
+
+ private:
+  // actions.cpp
+  void make_actions();
+  bool act(int key, int modifiers);
+  void save(const std::string& extension);
+  void save_crop();
+  void copy_command();
+  void copy(const std::string& text, const std::string& what);
+  // input.cpp
+  void listen();
+  void on_mouse_button(int button, int action, int modifiers);
+  void on_mouse_moved(double x, double y);
+  void on_scrolled(double by, int modifiers);
+  bool on_key(int key, int action, int modifiers);
+  void move_camera(const View&);
+  void drag_object(const View&, float dx, float dy);
+  void fly();
+  // panel_parts.cpp
+  PanelPart display_part();
+  PanelPart out_part();
+  // compare_parts.cpp
+  PanelPart compare_part();
+  PanelPart live_part();
+  void choose_against(const std::string&);
+  void next_mode();
+  void set_mode(std::size_t mode);
+  std::size_t compare_mode() const;
+  void choose_layer(const std::string&);
+  std::vector<std::string> layers() const;
+  DisplaySettings effective_display() const;
+  void upload_pictures();
+  // sweep_parts.cpp
+  void sweep_here();
+  void follow_sweep();
+  bool sweep_clicked(double x, double y);
+  void add_axis();
+  void go_to_bookmark(const std::string&);
+  void keep_bookmark();
+  void copy_picture();
+  // overlays.cpp
+  void paint_over(NVGcontext*, float x, float y, float w, float h);
+  void paint_scale(NVGcontext*, float x, float y, float w, float h) const;
+  void paint_box(NVGcontext*, float x, float y, float w, float ui_scale) const;
+  void paint_times(NVGcontext*, float x, float y, float w, float h) const;
+  void paint_sweep(NVGcontext*, float x, float y, float w, float h);
+  double frames_per_s() const;
+  // app.cpp
+  void tick();
+  void draw();
+  void write_journal(const Region&);
+  void show_pictures();
+  void follow_window();
+  void play();
+  void watch_files();
+  void tweak();
+  std::string status() const;
+  bool status_is_bad() const;
+  std::string pixel_words() const;
+  std::pair<int, int> pixel_at_pointer() const;  ///< column and row; may lie outside
+  std::optional<double> next_wake_s() const;
+  void say(const std::string& words, bool bad = false);
+  void guarded(const std::function<void()>&);
+  Region region() const;
+
+  ViewerOptions options_;
+  gl::Window window_;
+  nanogui::ref<Desk> desk_;
+  PictureView pictures_;
+  PanelLayer layer_;
+  Workspace workspace_;
+  Second second_;
+  FlipJob flip_;
+  PanelView panel_;
+  Journal journal_;
+  DisplaySettings display_;
+  Zoom zoom_;
+  SliderBar* exposure_ = nullptr;
+  std::vector<Action> actions_;
+
+  bool panel_dirty_ = true, picture_dirty_ = true;
+  std::array<std::shared_ptr<const Picture>, 2> shown_{};
+  int framebuffer_width_ = 0, framebuffer_height_ = 0;
+  double pointer_x_ = 0, pointer_y_ = 0;  ///< framebuffer pixels
+  int dragging_ = -1, drag_modifiers_ = 0;
+  bool drags_wipe_ = false;
+
+  // comparing
+  bool blink_ = false, layer_changed_ = false;
+  Layer layer_kind_ = Layer::picture;
+  std::string native_map_, scale_words_;
+  double scale_end_ = 1;
+  std::optional<FlipResult> flip_result_;
+  std::shared_ptr<const Image> flip_asked_a_, flip_asked_b_;
+  PixelBox box_;
+  Choice* against_choice_ = nullptr;
+  Choice* technique_b_choice_ = nullptr;
+  Choice* mode_choice_ = nullptr;
+  Choice* layer_choice_ = nullptr;
+  SliderBar* gain_slider_ = nullptr;
+  Field* against_field_ = nullptr;
+  Note* compare_note_ = nullptr;
+  PushButton* side_button_ = nullptr;
+  Choice* bookmark_choice_ = nullptr;
+
+  // live figures
+  bool graph_ = false, measuring_ = false;
+  std::deque<FrameFigures> times_;
+
+  // sweep here
+  std::unique_ptr<SweepHere> sweep_;
+  int chart_image_ = 0, chart_width_ = 0, chart_height_ = 0;
+  std::vector<int> thumbnail_images_;
+  bool chart_stale_ = false;
+  std::array<float, 4> chart_place_{};
+
+  // out
+  Bookmarks bookmarks_;
+  std::unique_ptr<TevClient> tev_;
+  std::unique_ptr<FileWatch> shader_watch_;
+  std::optional<RandomTweaks> tweaks_;
+  double began_s_ = 0;
+  std::string fault_;
+  std::size_t disagreements_ = 0;
+  std::set<int> flying_;  ///< keys held
+  double flown_s_ = 0;
+  bool playing_ = false;
+  double played_s_ = 0;
+  std::string said_;
+  bool said_bad_ = false;
+  double said_s_ = 0;
+};
+
+}  // namespace pellucid::sandbox

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "algorithms/scene/scene.hpp"
+#include "algorithms/technique.hpp"
+#include "sandbox/viewer/state/view_state.hpp"
+
+/// What the renderer (render_worker.hpp) tells the window.
+namespace pellucid::sandbox {
+
+/// A finished frame, never changed again. Its pixels are those that `pellucid render` writes for the same state.
+struct Picture {
+  std::uint64_t generation = 0;  ///< of the request that asked for it
+  ViewState state;
+  nlohmann::json recipe;  ///< of the frame, every parameter given
+  Image image;            ///< RGBA, scene-linear
+  std::vector<NativeMap> maps;
+  double frame_ms = 0, prepare_s = 0;
+  std::vector<std::pair<std::string, double>> pass_ms;
+  std::string clock;
+  std::size_t gpu_bytes = 0;
+  nlohmann::json native_errors;
+  std::string scene_hash, device, driver;
+  /// Of a reference: how far it has converged, in words; empty for a technique's frame.
+  std::string quality;
+  bool converged = true;
+};
+
+/// What is known of a scene once it has been loaded.
+struct LoadedScene {
+  std::string scene;
+  std::vector<View> views;
+  std::vector<ParameterInfo> parameters;  ///< without the prefix `scene.`
+};
+
+struct PhaseEvent {
+  std::uint64_t generation = 0;
+  std::string words;
+};
+struct SceneEvent {
+  std::uint64_t generation = 0;
+  LoadedScene loaded;
+};
+struct PictureEvent {
+  std::shared_ptr<const Picture> picture;
+};
+struct RefusedEvent {  ///< a state that cannot be drawn; the last picture stays
+  std::uint64_t generation = 0;
+  std::string reason;
+};
+struct ShadersEvent {
+  std::string error;  ///< the compiler's words, empty when all is well
+};
+struct EndedEvent {  ///< the renderer's process is gone; the next request starts another
+  std::uint64_t generation = 0;
+  std::string reason;  ///< empty after cancel()
+};
+using RenderEvent = std::variant<PhaseEvent, SceneEvent, PictureEvent, RefusedEvent, ShadersEvent, EndedEvent>;
+
+}  // namespace pellucid::sandbox

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "sandbox/viewer/state/workspace.hpp"
+
+namespace pellucid::sandbox {
+
+/// Turns every knob at random, the same way for the same seed: the endurance test of the window (`--random-tweaks`).
+class RandomTweaks {
+ public:
+  explicit RandomTweaks(std::uint64_t seed) : random_(seed) {}
+  /// One change of a parameter, technique, view, camera, size or scene; does nothing while the last is being drawn.
+  void step(Workspace&);
+  /// Of a picture that claims to be of the panel's state: the first parameter in which it is not; empty when all agree.
+  static std::string disagreement(const Workspace&);
+  std::size_t steps() const { return steps_; }
+
+ private:
+  template <class T>
+  const T& one_of(const std::vector<T>&);
+  double share() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+  void parameter(Workspace&);
+  std::mt19937_64 random_;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace pellucid::sandbox

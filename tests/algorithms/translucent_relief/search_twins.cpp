@@ -1,0 +1,142 @@
+// The searches in GLSL: equal steps against its C++ twin, the others against exact rays.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "algorithms/reference/height_field.hpp"
+#include "algorithms/translucent_relief/height_pyramid.hpp"
+#include "algorithms/translucent_relief/search.hpp"
+#include "gl/program.hpp"
+#include "tests/algorithms/compute.hpp"
+#include "tests/algorithms/relief_scenes.hpp"
+#include "tests/algorithms/rendered.hpp"
+
+namespace pellucid {
+namespace {
+
+struct Input {
+  glm::vec3 origin;
+  float begin;
+  glm::vec3 direction;
+  float end;
+  glm::vec2 uv;
+  float side, steps, refinements, pad[3];
+};
+struct Output {
+  float linear, taken, max_mip, cone;
+};
+
+constexpr int kTexels = 32;
+
+std::vector<Input> inputs() {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  std::vector<Input> all;
+  for (int i = 0; i < 4096; ++i) {
+    Input q{};
+    q.side = i % 3 == 0 ? -1.0F : 1.0F;
+    q.origin = {0.0F, 0.0F, q.side > 0 ? 0.0F : -0.3F};
+    q.direction = glm::normalize(glm::vec3(unit(random) - 0.5F, unit(random) - 0.5F, -q.side * (0.05F + unit(random))));
+    q.uv = {unit(random), unit(random)};
+    q.begin = 0.1F * unit(random);
+    q.end = i % 17 == 0 ? q.begin : q.begin + unit(random);
+    q.steps = static_cast<float>(1 + i % 40);
+    q.refinements = static_cast<float>(i % 7);
+    all.push_back(q);
+  }
+  return all;
+}
+
+ReliefRay ray_of(const Input& q) {
+  return {glm::dvec3(q.origin), glm::dvec3(q.direction), glm::dvec2(q.uv), glm::dvec2(1.0)};
+}
+
+class ReliefSearch : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    test::use_context();
+    const Image field = test::random_field(kTexels, 7);
+    layer = test::layer_of(field, -0.3F, 0.0F);
+    gl::Texture heights = gl::Texture::make_2d("field", gl::Format::r32f, kTexels, kTexels);
+    heights.upload(field.pixels);
+    heights.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
+    heights.bind(3);
+    const std::vector<Image> levels = translucent_relief::height_pyramid(field);
+    gl::Texture pyramid =
+        gl::Texture::make_2d("pyramid", gl::Format::rg32f, kTexels, kTexels, static_cast<int>(levels.size()));
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      pyramid.upload(levels[i].pixels, static_cast<int>(i));
+    pyramid.bind(4);
+    gl::Texture cones = gl::Texture::make_2d("cones", gl::Format::r32f, kTexels, kTexels);
+    cones.upload(translucent_relief::cone_map(field).pixels);
+    cones.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
+    cones.bind(5);
+    in = inputs();
+    out = test::compute<Output>(gl::Program("relief search", {"tests/algorithms/relief_search.comp.glsl"}), in);
+  }
+  inline static ReliefLayer layer;
+  inline static std::vector<Input> in;
+  inline static std::vector<Output> out;
+};
+
+TEST_F(ReliefSearch, EqualStepsAgreeWithTheirTwin) {
+  const HeightField exact(layer, glm::dvec2(1.0));
+  int hits = 0, differ = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const Input& q = in[i];
+    const ReliefRay ray = ray_of(q);
+    const auto crossing = translucent_relief::linear_crossing(
+        [&](float t) {
+          const double at = static_cast<double>(t);
+          return static_cast<float>(ray.at(at).z - exact.height_m(ray.uv_at(at)));
+        },
+        {q.begin, q.end}, q.side, 1e-6F, static_cast<int>(q.steps), static_cast<int>(q.refinements));
+    hits += crossing.at >= 0 ? 1 : 0;
+    // Where a sample lies on the surface to a rounding, one finds it in this step and the other in the next.
+    if (std::abs(out[i].linear - crossing.at) > 2e-4F || out[i].taken != static_cast<float>(crossing.taken)) ++differ;
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_LE(differ, 12) << "of " << in.size();
+}
+
+// A range of no length, or one that begins beneath the surface, is left out: there the rules differ.
+TEST_F(ReliefSearch, ThePyramidIsExact) {
+  const HeightField exact(layer, glm::dvec2(1.0));
+  int hits = 0, differ = 0, asked = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const Input& q = in[i];
+    const ReliefRay ray = ray_of(q);
+    const double begin = static_cast<double>(q.begin), end = static_cast<double>(q.end);
+    const double start = static_cast<double>(q.side) * (ray.at(begin).z - exact.height_m(ray.uv_at(begin)));
+    if (end <= begin || start < 1e-4) continue;
+    ++asked;
+    const auto truth = exact.crossing(ray, begin, end, static_cast<double>(q.side));
+    hits += truth ? 1 : 0;
+    if (std::abs(static_cast<double>(out[i].max_mip) - truth.value_or(-1.0)) > 1e-4) ++differ;
+  }
+  EXPECT_GT(hits, 700);
+  // A ray that grazes a crest meets it or not by a rounding.
+  EXPECT_LE(differ, asked / 500) << "of " << asked;
+}
+
+TEST_F(ReliefSearch, ConesStopAtTheSurface) {
+  const HeightField exact(layer, glm::dvec2(1.0));
+  int hits = 0, missed = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const Input& q = in[i];
+    if (q.side < 0) continue;
+    const ReliefRay ray = ray_of(q);
+    const double begin = static_cast<double>(q.begin), end = static_cast<double>(q.end);
+    if (end <= begin || ray.at(begin).z - exact.height_m(ray.uv_at(begin)) < 1e-4) continue;
+    const auto truth = exact.crossing(ray, begin, end, 1.0);
+    if (!truth) continue;
+    ++hits;
+    if (std::abs(static_cast<double>(out[i].cone) - *truth) > 3e-3) ++missed;
+  }
+  EXPECT_GT(hits, 500);
+  // The cones are of texel centres, and between them they are interpolated: a few steps are too long.
+  EXPECT_LE(missed, hits / 50) << "of " << hits;
+}
+
+}  // namespace
+}  // namespace pellucid

@@ -1,0 +1,191 @@
+#include "tests/viewer/window.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "algorithms/technique.hpp"
+#include "tests/glass_ball.hpp"
+
+namespace pellucid::test {
+namespace {
+
+using nlohmann::json;
+
+class Window : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string why;
+    if (XServer::get(why) == nullptr) GTEST_SKIP() << why;
+  }
+  TemporaryFolder folder_;
+  std::string fog_ = write_small_scene(folder_).string();
+  std::string glass_ = folder_.write("glass.scene.toml", kGlassBall).string();
+};
+
+TEST_F(Window, OpensEachTechniqueWithItsParameters) {
+  for (const auto& [scene, interfaces] : {std::pair{fog_, false}, {glass_, true}}) {
+    std::string first;
+    int count = 0;
+    for (const TechniqueInfo& info : techniques()) {
+      if (info.interfaces != interfaces) continue;
+      if (first.empty()) first = info.name;
+      ++count;
+    }
+    ViewerWindow window({scene, "-t", first, "--size", "96x72"}, folder_);
+    window.wait_picture();
+    int drawn = 1;
+    for (std::size_t i = 1; i < techniques().size(); ++i) {
+      window.key("t");
+      // The picture, or the reason why this technique cannot draw this scene.
+      const json event = window.wait("picture or reason", [&](const json& e) {
+        return (e.at("event") == "picture" && !e.at("stale").get<bool>()) ||
+               (e.at("event") == "status" &&
+                e.at("words").get<std::string>().find("draws no mirrors") != std::string::npos);
+      });
+      if (event.at("event") == "picture") {
+        ++drawn;
+        const std::string name = event.at("recipe").at("technique");
+        for (const ParameterInfo& info : find_technique(name).table().infos())
+          EXPECT_TRUE(window.shows(info.name)) << name << " " << info.name;
+      }
+    }
+    EXPECT_GE(drawn, count) << scene;
+    window.close();
+    EXPECT_FALSE(window.running());
+  }
+}
+
+TEST_F(Window, ChangesEachKindOfParameterByMouse) {
+  ViewerWindow window({fog_, "-t", "sampling_hulls", "--size", "96x72"}, folder_);
+  window.wait_picture();
+  // Integer: the slider's right end.
+  window.drag("hulls", 0.3, 0.99);
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 64; });
+  // Real of the scene.
+  window.drag("scene.density", 0.5, 0.01);
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "scene.density") == 0.0; });
+  // Choice: open the list, pick its second line.
+  window.click("section frame", 0.5);
+}
+
+TEST_F(Window, IsChangedByTheKeyboardAlone) {
+  ViewerWindow window({fog_, "-t", "sampling_hulls", "--size", "96x72"}, folder_);
+  window.wait_picture();
+  // A slider: arrows, and a typed value.
+  window.tab_to("hulls");
+  window.key("Home");
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 1; });
+  window.key("Right");
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 2; });
+  window.type("7");
+  window.key("Return");
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 7; });
+  // Back with Shift+Tab, to the technique, and the next one of the list.
+  window.key("shift+Tab");
+  window.tab_to("technique");
+  window.key("Return");
+  window.type("march");
+  window.key("Return");
+  window.wait_picture([](const json& recipe) { return recipe.at("technique") == "ray_marching"; });
+}
+
+TEST_F(Window, RefusesAValueOutOfRangeInTheFieldWithTheReason) {
+  ViewerWindow window({fog_, "-t", "sampling_hulls", "--size", "96x72"}, folder_);
+  const json first = window.wait_picture();
+  const auto before = window.place("row hulls");
+  window.click("hulls field");
+  window.key("ctrl+a");
+  window.type("99");
+  window.key("Return");
+  // The row grows by the reason.
+  window.wait("a higher row", [&](const json& event) {
+    return event.at("event") == "places" && event.at("widgets").at("row hulls").at(3) > before[3] + 8;
+  });
+  window.key("ctrl+a");
+  window.type("3");
+  window.key("Return");
+  const json picture =
+      window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 3; });
+  // 99 was never drawn.
+  for (const json& event : window.events()) {
+    if (event.at("event") == "picture") EXPECT_NE(ViewerWindow::value(event.at("recipe"), "hulls"), 99);
+  }
+  EXPECT_EQ(window.place("row hulls")[3], before[3]);
+}
+
+TEST_F(Window, SavesTheHeadlessPictureAndOpensItAgain) {
+  const std::vector<std::string> how{fog_,     "-t",   "sampling_hulls", "-s",   "hulls=3",
+                                     "--view", "side", "--size",         "96x72"};
+  {
+    ViewerWindow window(how, folder_);
+    window.wait_picture();
+    // The camera by hand: the recipe must hold it.
+    window.xdotool({"mousemove", "600", "200", "mousedown", "1", "mousemove", "640", "215", "mouseup", "1"});
+    window.wait_picture([](const json& recipe) { return recipe.at("view").get<std::string>().find("eye=") == 0; });
+    window.key("ctrl+s");
+    window.wait("saved", [](const json& event) { return event.at("event") == "saved"; });
+    window.key("c");
+    const std::string command =
+        window.wait("copied", [](const json& e) { return e.at("event") == "copied"; }).at("text");
+    // The command line makes the same picture, bit for bit.
+    const Outcome shell = run({"sh", "-c", std::string(PELLUCID_PROGRAM) + command.substr(command.find(' '))},
+                              {.folder = folder_.path()});
+    ASSERT_TRUE(succeeded(shell)) << command;
+  }
+  const ImageFile saved = read_image(folder_ / "small.scene_sampling_hulls_001.exr");
+  const ImageFile headless = read_image(folder_ / "picture.exr");
+  EXPECT_EQ(saved.image.pixels, headless.image.pixels);
+
+  ViewerWindow again({(folder_ / "small.scene_sampling_hulls_001.exr").string()}, folder_);
+  const json picture = again.wait_picture();
+  const json recipe = json::parse(saved.attributes.at("pellucid.recipe"));
+  EXPECT_EQ(picture.at("recipe").at("view"), recipe.at("view"));
+  EXPECT_EQ(picture.at("recipe").at("parameters"), recipe.at("parameters"));
+}
+
+TEST_F(Window, ShowsThePictureWithinEightBits) {
+  const Outcome headless =
+      pellucid({"render", fog_, "-t", "sampling_hulls", "--size", "96x72", "-o", (folder_ / "t.png").string()});
+  ASSERT_TRUE(succeeded(headless));
+  const Image truth = read_image(folder_ / "t.png").image;
+  ViewerWindow window({fog_, "-t", "sampling_hulls", "--size", "96x72"}, folder_);
+  window.wait_picture();
+  const json drawn = window.wait("drawing", [](const json& e) { return e.at("event") == "drawn"; });
+  const Image screen = window.screenshot("shown.png");
+  const auto region = drawn.at("region").get<std::array<int, 4>>();
+  ASSERT_EQ(drawn.at("scale"), 1.0);
+  const int x = region[0] - drawn.at("left").get<int>(), y = region[1] - drawn.at("top").get<int>();
+  float worst = 0;
+  for (int row = 0; row < truth.height; ++row)
+    for (int column = 0; column < truth.width; ++column)
+      for (int c = 0; c < 3; ++c)
+        worst = std::max(worst, std::abs(truth.at(column, row)[c] - screen.at(x + column, y + row)[c]));
+  EXPECT_LE(worst, 1.01F / 255);  // the GPU's and the CPU's transform may round to neighbouring codes
+}
+
+TEST_F(Window, FitsSmallAndLargeWindows) {
+  ViewerWindow window({fog_, "-t", "volume_slices", "--size", "96x72"}, folder_);
+  window.wait_picture();
+  for (const auto& [width, height] : {std::pair{300, 200}, {3000, 1600}}) {
+    window.resize(width, height);
+    const json drawn = window.wait("drawing", [&, w = width](const json& e) {
+      return e.at("event") == "drawn" && e.at("framebuffer").at(0) == w;
+    });
+    const Image screen = window.screenshot(std::to_string(width) + ".png");
+    EXPECT_EQ(screen.width, width);
+    EXPECT_EQ(screen.height, height);
+  }
+}
+
+TEST(NoDisplay, IsToldWithTheCommandThatDoesTheSame) {
+  TemporaryFolder folder;
+  const std::string scene = write_small_scene(folder).string();
+  const Outcome outcome = pellucid({"view", scene, "-t", "volume_slices", "-s", "slices=9"},
+                                   {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+  EXPECT_TRUE(refused(outcome, 1, {"there is no display", "pellucid render", "-t volume_slices", "slices=9"}));
+}
+
+}  // namespace
+}  // namespace pellucid::test
