@@ -26,7 +26,7 @@ vec3 inner_hit(vec3 position, vec3 R, out vec3 outward) {
 struct InnerPath {
   vec3 position, direction, throughput;
 #ifdef SCATTERING
-  float length;  // of the way so far [m]; what absorbs is left to translucency.glsl
+  float way_m;  // so far; what absorbs is left to translucency.glsl
 #endif
 };
 void leave(inout InnerPath path, vec3 outward, bool last, out vec3 exit_direction, out vec3 exit_weight) {
@@ -47,7 +47,7 @@ void leave(inout InnerPath path, vec3 outward, bool last, out vec3 exit_directio
 void go_on(inout InnerPath path, out vec3 outward) {
   vec3 at = inner_hit(path.position, path.direction, outward);
 #ifdef SCATTERING
-  path.length += distance(at, path.position);
+  path.way_m += distance(at, path.position);
 #else
   path.throughput *= transmitted(absorption, distance(at, path.position));
 #endif

@@ -34,7 +34,7 @@ vec3 left(inout InnerPath path, vec3 outward, bool last) {
 #ifdef SCATTERING
   if (before.x <= 0.0) return vec3(0.0);
   leaves_at = path.position;
-  return before.x * translucent(extinction * path.length, exit_direction, exit_weight.x / before.x, returned);
+  return before.x * translucent(extinction * path.way_m, exit_direction, exit_weight.x / before.x, returned);
 #else
   return exit_weight * incoming(path.position, exit_direction);
 #endif
@@ -47,12 +47,12 @@ vec3 dielectric(vec3 V, vec3 n, bool inside) {
   path.position = world_position;
   path.throughput = vec3(1.0);
 #ifdef SCATTERING
-  path.length = 0.0;
+  path.way_m = 0.0;
 #endif
   if (inside) {  // the eye is in the object: this is already where a path leaves
     path.direction = V;
 #ifdef SCATTERING
-    path.length = distance(eye, world_position);
+    path.way_m = distance(eye, world_position);
 #else
     path.throughput = transmitted(absorption, distance(eye, world_position));
 #endif

@@ -94,13 +94,11 @@ void add_slab(cli::App& root, std::vector<Command>& commands) {
       ->check(cli::IsMember({"gaussian", "unscattered", "two_gaussians"}));
   app->add_flag("--json", options->json, "Print JSON");
   app->footer(
-      "The beam is perpendicular and has unit flux, and the slab has no interface. Radiance is that of scattered "
-      "light;\n"
-      "transmittance holds the unscattered part too. The fit is of light seen through the slab: sharp + f_t + f_2 + "
-      "c_t is\n"
-      "the transmittance, theta_bar the standard deviation of a Gaussian in the angle, c_t and c_r are spread over "
-      "the\n"
-      "sphere, and fit_rms compares the light within each angle, as a share of the incident flux.\n"
+      "The beam is perpendicular and has unit flux, and the slab has no interface. Radiance is that of scattered\n"
+      "light; transmittance holds the unscattered part too. The fit is of light seen through the slab: its parts\n"
+      "sharp, f_t, f_2 and c_t sum to the transmittance. theta_bar is a Gaussian's standard deviation in the angle,\n"
+      "c_t and c_r are spread over the sphere, and fit_rms compares the light within each angle, as a share of the\n"
+      "incident flux.\n"
       "Example: pellucid slab --depth 2 --anisotropy 0.75 --albedo 0.9 --json");
   commands.push_back({app, [options] { return slab(*options); }});
 }
