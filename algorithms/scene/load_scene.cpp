@@ -18,7 +18,7 @@
 #include "algorithms/scene/meshes/mesh_file.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/toml/scene_source.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 
 namespace pellucid {
 

@@ -1,5 +1,5 @@
 // Light on its way to a point between or on the layers (Timonen, Sec. 3.1, Algorithm 2). C++ twin, by exact hits:
-// algorithms/reference/relief_tracer.cpp.
+// algorithms/reference/relief/relief_tracer.cpp.
 #include "algorithms/shaders/optics.glsl"
 #include "algorithms/translucent_relief/layers.glsl"
 

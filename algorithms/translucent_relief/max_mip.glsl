@@ -1,5 +1,5 @@
 // Rays against a height field through a pyramid of its greatest and least heights (Tevs et al. 2008), exact in the cells
-// between texel centres. C++ twin: HeightField::crossing (algorithms/reference/height_field.cpp), without the pyramid.
+// between texel centres. C++ twin: HeightField::crossing (algorithms/reference/relief/height_field.cpp), without the pyramid.
 // The includer defines extremes(), corners(), map_size() and pyramid_top().
 
 vec2 extremes(int layer, ivec2 cell, int level);  // greatest and least height [m] of the cell of 2^level × 2^level

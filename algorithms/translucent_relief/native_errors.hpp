@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "algorithms/reference/relief_tracer.hpp"
+#include "algorithms/reference/relief/relief_tracer.hpp"
 #include "algorithms/technique.hpp"
 
 namespace pellucid::translucent_relief {

@@ -12,7 +12,7 @@
 #include "algorithms/parameters.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/error.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/spec/spec.hpp"
 
 namespace pellucid::sweeps {

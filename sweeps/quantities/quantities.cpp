@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <toml++/toml.h>
 
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/spec/constraint.hpp"
 #include "sweeps/store/rows.hpp"
 

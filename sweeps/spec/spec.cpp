@@ -14,7 +14,7 @@
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/error.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/spec/preview.hpp"
 #include "sweeps/spec/spec_axes.hpp"

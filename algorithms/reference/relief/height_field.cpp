@@ -1,4 +1,4 @@
-#include "algorithms/reference/height_field.hpp"
+#include "algorithms/reference/relief/height_field.hpp"
 
 #include <algorithm>
 #include <cmath>

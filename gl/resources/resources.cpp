@@ -1,4 +1,4 @@
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "gl/embedded_resources.hpp"
 #include "gl/error.hpp"
+#include "gl/resources/embedded_resources.hpp"
 
 namespace pellucid {
 

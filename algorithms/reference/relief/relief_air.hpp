@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/reference/height_field.hpp"
+#include "algorithms/reference/relief/height_field.hpp"
 #include "algorithms/scene/relief/relief.hpp"
 
 namespace pellucid {

@@ -1,4 +1,4 @@
-#include "algorithms/reference/light_path.hpp"
+#include "algorithms/reference/media/light_path.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "algorithms/scattering/environment_filter.hpp"
+#include "algorithms/key_maps/environment_filter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
-#include "algorithms/scattering/sphere_map.hpp"
+#include "algorithms/key_maps/sphere_map.hpp"
 #include "gl/cube_faces.hpp"
 
 namespace pellucid::scattering {

@@ -1,4 +1,4 @@
-#include "gl/egl_devices.hpp"
+#include "gl/devices/egl_devices.hpp"
 
 #include <cstddef>
 #include <string>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "gl/device_node.hpp"
+#include "gl/devices/device_node.hpp"
 
 namespace pellucid::gl {
 namespace {

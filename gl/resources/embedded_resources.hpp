@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The table that gl/embed_resources.cmake generates; read it through gl/resources.hpp.
+/// The table that gl/resources/embed_resources.cmake generates; read it through gl/resources/resources.hpp.
 namespace pellucid::embedded {
 
 struct Resource {

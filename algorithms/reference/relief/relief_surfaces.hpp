@@ -8,7 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "algorithms/reference/geometry.hpp"
-#include "algorithms/reference/relief_tracer.hpp"
+#include "algorithms/reference/relief/relief_tracer.hpp"
 #include "algorithms/reference/surface_point.hpp"
 
 namespace pellucid {

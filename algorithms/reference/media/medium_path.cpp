@@ -1,4 +1,4 @@
-#include "algorithms/reference/medium_path.hpp"
+#include "algorithms/reference/media/medium_path.hpp"
 
 #include <cassert>
 

@@ -1,4 +1,4 @@
-#include "algorithms/scattering/key_widths.hpp"
+#include "algorithms/key_maps/key_widths.hpp"
 
 #include <algorithm>
 #include <cassert>

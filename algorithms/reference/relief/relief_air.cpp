@@ -1,4 +1,4 @@
-#include "algorithms/reference/relief_air.hpp"
+#include "algorithms/reference/relief/relief_air.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "algorithms/scattering/key_chain.hpp"
+#include "algorithms/key_maps/key_chain.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "algorithms/scattering/environment_filter.hpp"
+#include "algorithms/key_maps/environment_filter.hpp"
 
 namespace pellucid::scattering {
 

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/scattering/key_widths.hpp"
-#include "algorithms/scattering/sphere_map.hpp"
+#include "algorithms/key_maps/key_widths.hpp"
+#include "algorithms/key_maps/sphere_map.hpp"
 #include "algorithms/scene/scene.hpp"
 
 /// Key maps: an environment filtered by Gaussians on the sphere, of one width each (Chan and Wang 2005, Sec. 3.1;

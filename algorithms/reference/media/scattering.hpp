@@ -5,8 +5,8 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/reference/light_path.hpp"
-#include "algorithms/reference/medium_path.hpp"
+#include "algorithms/reference/media/light_path.hpp"
+#include "algorithms/reference/media/medium_path.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
 

@@ -1,4 +1,4 @@
-#include "algorithms/reference/cubic.hpp"
+#include "algorithms/reference/media/cubic.hpp"
 
 #include <algorithm>
 #include <cmath>

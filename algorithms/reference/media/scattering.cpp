@@ -1,4 +1,4 @@
-#include "algorithms/reference/scattering.hpp"
+#include "algorithms/reference/media/scattering.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "sandbox/commands/file_provenance.hpp"
+#include "sandbox/file_provenance.hpp"
 
 #include <nlohmann/json.hpp>
 

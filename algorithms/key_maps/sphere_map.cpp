@@ -1,4 +1,4 @@
-#include "algorithms/scattering/sphere_map.hpp"
+#include "algorithms/key_maps/sphere_map.hpp"
 
 #include <algorithm>
 #include <cassert>

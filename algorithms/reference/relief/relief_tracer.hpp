@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/reference/height_field.hpp"
+#include "algorithms/reference/relief/height_field.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/scene/meshes/tangents.hpp"
 #include "algorithms/scene/scene.hpp"

@@ -1,11 +1,11 @@
-#include "algorithms/reference/relief_surfaces.hpp"
+#include "algorithms/reference/relief/relief_surfaces.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
 #include <fmt/format.h>
 
-#include "algorithms/reference/relief_air.hpp"
+#include "algorithms/reference/relief/relief_air.hpp"
 
 namespace pellucid {
 namespace {

@@ -1,4 +1,4 @@
-#include "algorithms/reference/relief_tracer.hpp"
+#include "algorithms/reference/relief/relief_tracer.hpp"
 
 #include <algorithm>
 #include <cmath>
