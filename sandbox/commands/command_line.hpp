@@ -71,7 +71,7 @@ class App {
   Option* add_flag_callback(const std::string& names, std::function<void()> action, const std::string& description);
   void footer(const std::string& text);
   void footer(std::function<std::string()> text);  ///< made when `--help` is asked for
-  void group(const std::string& name);  ///< empty: hidden from `--help`
+  void group(const std::string& name);             ///< empty: hidden from `--help`
   void require_subcommand(int count);
   bool parsed() const;
   std::size_t count(const std::string& option) const;  ///< occurrences on the command line

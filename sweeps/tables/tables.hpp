@@ -25,13 +25,13 @@ struct TableInfo {
   std::string spec_path;  ///< what `pellucid sweep run` takes for it: the same name, or the file
 };
 
-/// Every table of the built-in papers, and those of one paper.
+/// Every table of the built-in papers.
 std::vector<TableInfo> tables();
-std::vector<TableInfo> tables_of(const PaperPointer&);
 
 /// "PAPER.NAME", "NAME" where one paper alone has such a table, or "FILE.toml:NAME". Throws InputError with the nearest
 /// name when there is none.
 TableInfo find_table(std::string_view name);
+TableInfo find_table(const PaperEntry&);
 
 /// One cell of a table. `value` is what a program should read, `text` what is set for people: rounded, and with a
 /// dagger where the frame time did not converge.
