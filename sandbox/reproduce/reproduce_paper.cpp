@@ -129,13 +129,11 @@ const SweepOutcome* sweep_of(const PaperOutcome& outcome, const std::string& spe
 }
 
 void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
-  const std::string prefix = std::string(outcome.paper->name) + ".";
   make_folder(folder / "tables");
-  for (const sweeps::TableInfo& info : sweeps::tables()) {
-    if (!info.name.starts_with(prefix)) continue;
-    const SweepOutcome* sweep = sweep_of(outcome, info.spec);
-    const sweeps::Table table = sweeps::make_table(info.name, sweep == nullptr ? std::vector<json>{} : sweep->rows);
-    const std::string name = info.name.substr(prefix.size());
+  for (const std::string& name : sweeps::entry_names(*outcome.paper, "tables")) {
+    const sweeps::PaperEntry entry{outcome.paper, name};
+    const SweepOutcome* sweep = sweep_of(outcome, sweeps::find_table(entry).spec);
+    const sweeps::Table table = sweeps::make_table(entry, sweep == nullptr ? std::vector<json>{} : sweep->rows);
     using enum sweeps::TableFormat;
     for (const auto& [format, extension] : {std::pair{markdown, ".md"}, std::pair{csv, ".csv"},
                                             std::pair{latex, ".tex"}, std::pair{sweeps::TableFormat::json, ".json"}})
