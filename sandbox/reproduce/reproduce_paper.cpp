@@ -129,13 +129,12 @@ const SweepOutcome* sweep_of(const PaperOutcome& outcome, const std::string& spe
 }
 
 void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
-  const std::string prefix = std::string(outcome.paper->name) + ".";
   make_folder(folder / "tables");
-  for (const sweeps::TableInfo& info : sweeps::tables()) {
-    if (!info.name.starts_with(prefix)) continue;
+  for (const sweeps::TableInfo& info : sweeps::tables_of(outcome.paper)) {
     const SweepOutcome* sweep = sweep_of(outcome, info.spec);
-    const sweeps::Table table = sweeps::make_table(info.name, sweep == nullptr ? std::vector<json>{} : sweep->rows);
-    const std::string name = info.name.substr(prefix.size());
+    const std::string name = info.name.substr(outcome.paper->name.size() + 1);
+    const sweeps::Table table =
+        sweeps::make_table({outcome.paper, name}, sweep == nullptr ? std::vector<json>{} : sweep->rows);
     using enum sweeps::TableFormat;
     for (const auto& [format, extension] : {std::pair{markdown, ".md"}, std::pair{csv, ".csv"},
                                             std::pair{latex, ".tex"}, std::pair{sweeps::TableFormat::json, ".json"}})
@@ -250,6 +249,7 @@ int reproduce_papers(const PaperOptions& options) {
   const std::vector<sweeps::PaperPointer> chosen = wanted(options.what);
   for (const sweeps::PaperPointer& paper : chosen) {
     // A mistake in what comes last shows before hours of measuring.
+    sweeps::tables_of(paper);
     plots::read_figures(paper);
     plots::read_pictures(*paper);
   }

@@ -17,7 +17,7 @@
 namespace pellucid::sweeps {
 
 struct TableInfo {
-  std::string name;       ///< "sampling_hulls.table1"
+  std::string name;       ///< "PAPER.table1"
   std::string address;    ///< what the command line calls it: the name, or "my.toml:table1"
   std::string title;      ///< the caption
   std::string source;     ///< paper and table of the published numbers

@@ -74,6 +74,12 @@ title = "The same, traced"
 same_as = "fog"
 reference = { surfaces = "rays" }
 close_up = { x = 4, y = 2, size = "16x12", why = "a corner" }
+
+[tables.errors]
+title = "Errors over hulls"
+columns = { hulls = [1, 2, 4, 8] }
+name = "{hulls} hulls"
+rows = [{ show = "name", label = "M" }, { quantity = "flip_mean", paper = [0.5, 0.4, "none", 0.1] }]
 )toml";
 
 class ReproducePaper : public testing::Test {
@@ -125,6 +131,17 @@ TEST_F(ReproducePaper, AFileOfOnesOwnFromItsSweepToItsPage) {
     EXPECT_EQ(std::stod(y), row.at("flip_mean").get<double>());
   }
 
+  // So are the table's, beside the published ones; what a preview does not measure stays empty.
+  const json table = json::parse(read_file(out / "mine" / "tables" / "errors.json"));
+  ASSERT_EQ(table.size(), 4U);
+  EXPECT_EQ(table.at(0).at("paper"), 0.5);
+  EXPECT_EQ(table.at(2).at("paper"), nullptr);
+  for (const std::size_t column : {0U, 2U}) {
+    const json row = json::parse(printed.out).at(column / 2);
+    EXPECT_EQ(table.at(column).at("ours"), row.at("flip_mean"));
+    EXPECT_EQ(table.at(column + 1).at("ours"), nullptr);
+  }
+
   ASSERT_EQ(done.at("pictures").size(), 2U);
   for (const json& picture : done.at("pictures")) {
     EXPECT_FALSE(picture.at("kept").get<bool>());
@@ -132,9 +149,10 @@ TEST_F(ReproducePaper, AFileOfOnesOwnFromItsSweepToItsPage) {
     EXPECT_TRUE(std::filesystem::exists(out / picture.at("exr").get<std::string>()));
   }
   const std::string page = read_file(out / "index.html");
-  for (const char* words : {"Hulls of mine", "Error over points", "figures/error.csv", "A box of fog", "(a)",
-                            "As few points as there can be.", "hulls 1, samples 1", "32×24 pixels", "a corner",
-                            "the same forward pass, shadow maps included", "The reference is traced"})
+  for (const char* words :
+       {"Hulls of mine", "Errors over hulls", "Error over points", "figures/error.csv", "A box of fog", "(a)",
+        "As few points as there can be.", "hulls 1, samples 1", "32×24 pixels", "a corner",
+        "the same forward pass, shadow maps included", "The reference is traced"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
 
   for (const json& picture : reproduce().at("pictures"))
