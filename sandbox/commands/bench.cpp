@@ -279,9 +279,8 @@ void add_bench(cli::App& root, std::vector<Command>& commands) {
   app->add_option("--device", options->device, "EGL device (pellucid devices)");
   app->add_flag("--json", options->json, "Print the measurement as JSON");
   app->footer(
-      "Example: pellucid bench sampling_hulls -s hulls=4 -s samples=8\n"
-      "Example: pellucid bench distance_impostors -s iterations=2 --size 700x700\n"
-      "Example: pellucid bench geocube --scene glass_head --size 512x512\n"
+      "Example: pellucid bench TECHNIQUE -s NAME=VALUE --size 512x512
+      "
       "Example: pellucid bench all --frames 24\n"
       "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
       "ratio\n"
@@ -290,7 +289,7 @@ void add_bench(cli::App& root, std::vector<Command>& commands) {
       "Against VTK the scene's volume is drawn alone and white over black, and VTK's sample distance is the longest "
       "at\n"
       "which its error against the reference is no larger than the technique's. VTK needs no display for it.\n"
-      "Against ray tracing (distance_impostors) the reference traces the same picture between the blocks, one tree of "
+      "Against ray tracing the reference traces the same picture between the blocks, one tree of "
       "rays\n"
       "per pixel on all cores of the processor, following light as far as the frame does.");
   commands.push_back({app, [options] { return bench(*options); }});

@@ -248,6 +248,7 @@ int reproduce_papers(const PaperOptions& options) {
   const std::vector<sweeps::PaperPointer> chosen = wanted(options.what);
   for (const sweeps::PaperPointer& paper : chosen) {
     // A mistake in what comes last shows before hours of measuring.
+    sweeps::tables_of(paper);
     plots::read_figures(paper);
     plots::read_pictures(*paper);
   }

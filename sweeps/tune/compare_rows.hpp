@@ -19,7 +19,7 @@ const char* name(TimeChange);
 const char* name(QualityChange);
 
 struct ComparedPoint {
-  std::string point;  ///< what it is: "sampling_hulls fog_forest default_view 720x540 hulls=4 samples=8"
+  std::string point;  ///< what it is: "volume_slices fog_forest default_view 720x540 slices=64"
   std::string device;
   TimeChange time = TimeChange::untimed;
   double ratio = 1;               ///< median of B over that of A

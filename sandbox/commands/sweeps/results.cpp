@@ -154,9 +154,8 @@ void add_results(cli::App& root, std::vector<Command>& commands) {
   table_app->footer([] {
     return names_text() +
            "\nExamples:\n"
-           "  pellucid sweep run sampling_hulls_table1 --store hulls.db\n"
-           "  pellucid table sampling_hulls.table1 --store hulls.db\n"
-           "  pellucid table sampling_hulls.table1 --store hulls.db --format latex --bold-best -o table1.tex\n"
+           "  pellucid table table1 --store hulls.db\n"
+           "  pellucid table table1 --store hulls.db --format latex --bold-best -o table1.tex\n"
            "  pellucid table my.toml:hulls --store my.db";
   });
   commands.push_back({table_app, [options] { return table(*options); }});
