@@ -12,7 +12,7 @@ uniform float steps_at_normal;  // share of the steps that a ray along the norma
 uniform int boundaries;         // of the medium, that a light ray may pass
 
 const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
-ivec4 taken = ivec4(0);  // heights asked for, by kind of ray
+vec4 taken = vec4(0.0);  // heights asked for, by kind of ray
 
 int steps_of(int kind, Ray ray) {
   float share = mix(1.0, steps_at_normal, abs(ray.direction.z));
@@ -20,7 +20,7 @@ int steps_of(int kind, Ray ray) {
 }
 
 float find_crossing(int layer, Ray ray, float from, float side, int kind) {
-  int count = 0;
+  float count = 0.0;
   float t;
   vec2 range = clip_to_layer(layer, ray, from);
 #if SEARCH == 1

@@ -224,7 +224,7 @@ void main() {
   vec3 to_light = vec3(0.0, 0.0, -1.0);
   if (LIGHT_COUNT > 0) light_irradiance(0, to_world_point(p), to_light);
   to_light = to_frame * to_light;
-  report_scale = vec4(metres, float(taken[kView]), 1.0);
+  report_scale = vec4(metres, taken[kView], 1.0);
   vec3 share = vec3(0.0);
   if (t >= 0.0) share = light_reaching(ray, p, to_light, 1.0);
   report_light = vec4(to_light, max(share.r, max(share.g, share.b)));
@@ -233,7 +233,7 @@ void main() {
   if (show == kShowOcclusion) color = vec3(occlusion);
   if (show == kShowSteps) {
     float most = dot(step_counts, vec4(1.0));
-    color = vec3(float(taken.x + taken.y + taken.z + taken.w) / most);
+    color = vec3(dot(taken, vec4(1.0)) / most);
   }
   radiance = vec4(color, 1.0);
   vec4 clip = world_to_clip * vec4(to_world_point(p), 1.0);
