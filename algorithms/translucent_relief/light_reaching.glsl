@@ -2,6 +2,9 @@
 // algorithms/reference/relief/relief_tracer.cpp.
 #include "algorithms/shaders/optics.glsl"
 #include "algorithms/translucent_relief/layers.glsl"
+#ifdef SCATTERING
+#include "algorithms/translucent_relief/scattering.glsl"
+#endif
 
 uniform float outside_index;  // n1
 uniform float index;          // n2
@@ -60,7 +63,11 @@ vec3 light_reaching(Ray frame, vec3 p, vec3 to_light, float side) {
   }
   if (side < 0.0) inside += max(clip_to_layer(kMedium, ray, from).y - from, 0.0);
 #ifdef ABSORPTION
+#ifdef SCATTERING
+  return share * scattered_transmittance(inside);
+#else
   return share * transmitted(absorption, inside);
+#endif
 #endif
   return vec3(share);
 #endif
