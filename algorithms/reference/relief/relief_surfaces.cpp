@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "algorithms/reference/relief/relief_air.hpp"
-||||||| parent of 314f353 (wip: bare frame, scattering, paper file):algorithms/reference/relief_surfaces.cpp
-#include "algorithms/reference/relief_air.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {
