@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/tables/tables.hpp"
 
 namespace pellucid::sweeps {

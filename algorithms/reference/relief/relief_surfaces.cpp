@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "algorithms/reference/relief/relief_air.hpp"
+#include "gl/error.hpp"
 
 namespace pellucid {
 namespace {
@@ -25,6 +26,12 @@ ReliefSurfaces::ReliefSurfaces(const Scene& scene, const Geometry& geometry, con
                                const ReliefOptics& optics)
     : scene_(&scene), geometry_(&geometry), light_(&light) {
   if (scene.reliefs.empty()) return;
+  for (const Relief& relief : scene.reliefs) {
+    if (relief.scatters()) {
+      throw InputError(fmt::format("the reference does not trace the scattering of relief '{}' of scene '{}'",
+                                   relief.name, scene.name));
+    }
+  }
   if (std::any_of(scene.instances.begin(), scene.instances.end(),
                   [&](const Instance& i) { return !optical(scene, i); }))
     objects_.emplace(scene, [&](int i) { return !optical(scene, scene.instances[static_cast<std::size_t>(i)]); });
