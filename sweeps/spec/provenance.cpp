@@ -44,7 +44,7 @@ std::string shell_word(const std::string& text) {
 std::string shell_line(const std::vector<std::string>& argv) {
   std::string line;
   for (const std::string& word : argv)
-    line += (line.empty() ? "" : " ") + shell_word(word);
+    line.append(line.empty() ? "" : " ").append(shell_word(word));
   return line;
 }
 
