@@ -279,8 +279,7 @@ void add_bench(cli::App& root, std::vector<Command>& commands) {
   app->add_option("--device", options->device, "EGL device (pellucid devices)");
   app->add_flag("--json", options->json, "Print the measurement as JSON");
   app->footer(
-      "Example: pellucid bench TECHNIQUE -s NAME=VALUE --size 512x512
-      "
+      "Example: pellucid bench TECHNIQUE -s NAME=VALUE --size 512x512\n"
       "Example: pellucid bench all --frames 24\n"
       "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
       "ratio\n"

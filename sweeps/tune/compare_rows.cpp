@@ -50,7 +50,8 @@ Rows by_identity(const std::vector<json>& rows, const std::vector<std::string>& 
   Rows result;
   for (const json& row : rows) {
     if (row.value("status", "") != "ok") continue;
-    result.emplace(identity(row, parameters) + (by_machine ? "\n" + machine(row) : ""), &row);
+    result.emplace(
+        by_machine ? fmt::format("{}\n{}", identity(row, parameters), machine(row)) : identity(row, parameters), &row);
   }
   return result;
 }
