@@ -1,6 +1,8 @@
-// A grid over the medium's surface, each point moved to where the light that it refracts meets the solid.
+// A grid over the medium's surface, each point moved to where the light that it refracts meets the plane at the solid's mean
+// height.
 #include "algorithms/translucent_relief/light_reaching.glsl"
 
+uniform float plane_height;  // the solid's mean
 uniform vec3 to_light;  // in the mesh's frame
 uniform vec2 metres;    // over a unit of the mesh's u and v
 uniform int grid;       // cells along a side of the maps
@@ -25,8 +27,8 @@ void main() {
   float reflected_share = fresnel_dielectric(cosine, eta);
   if (reflected_share >= 1.0) return;
   Ray ray = Ray(vec3(0.0, 0.0, height), refract(-to_light, n, eta), uv, 1.0 / metres);
-  float t = find_crossing(kSolid, ray, 0.0, 1.0, kRefracted);
-  if (t < 0.0) return;
+  // To a plane, where triangles of the grid stay whole; the solid's own shadows are the picture's.
+  float t = max((plane_height - height) / ray.direction.z, 0.0);
   share = (1.0 - reflected_share) * cosine / (n.z * to_light.z) * transmitted(absorption, t);
   vec2 copy = copies ? vec2(gl_InstanceID % 3 - 1, gl_InstanceID / 3 - 1) : vec2(0.0);
   gl_Position = vec4(2.0 * (uv_at(ray, t) * tiling + copy) - 1.0, 0.0, 1.0);

@@ -61,7 +61,7 @@ vec3 light_reaching(Ray frame, vec3 p, vec3 to_light, float side) {
     from = t;
     side = -side;
   }
-  if (side < 0.0) inside += max(clip_to_layer(kMedium, ray, from).y - from, 0.0);
+  if (side < 0.0) inside += max(clip_to_layer(kEither, ray, from).y - from, 0.0);
 #ifdef ABSORPTION
 #ifdef SCATTERING
   return share * scattered_transmittance(inside);

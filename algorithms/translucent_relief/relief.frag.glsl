@@ -81,7 +81,11 @@ vec3 solid_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
     // Under a medium: what its surface gathers here, arriving as through a level one.
     vec3 bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), outside_index / index);
     if (side < 0.0 && kLightKinds[i] == kDirectional && to_light.z > 0.0 && bent.z > 0.0) {
-      vec3 gathered = textureLod(caustic_maps, vec3(uv * tiling, float(i)), 0.0).rgb;
+      // The maps are of the plane at the solid's mean height: where the light through here comes to it.
+      vec2 on_plane = uv + bent.xy / bent.z * (plane_height - p.z) * frame.uv_per_metre;
+      vec3 gathered = textureLod(caustic_maps, vec3(on_plane * tiling, float(i)), 0.0).rgb;
+      Ray ray = Ray(p, bent, frame.uv, frame.uv_per_metre);
+      if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) gathered = vec3(0.0);
       sum += irradiance * albedo * gathered *
              (to_light.z * max(dot(n, bent), 0.0) / bent.z * object_visibility(i, p, to_light));
       continue;
@@ -153,7 +157,7 @@ vec3 medium_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
     float t = meet_solid(ray, kRefracted, planar_refractions);
     vec3 color = t < 0.0 ? sky_radiance(to_world_direction(ray.direction))
                          : solid_radiance(frame, ray.origin + t * ray.direction, ray.direction, occlusion);
-    float end = t < 0.0 ? max(clip_to_layer(kMedium, ray, 0.0).y, 0.0) : t;
+    float end = t < 0.0 ? max(clip_to_layer(kEither, ray, 0.0).y, 0.0) : t;
 #ifdef OBJECTS
     vec3 object_color;
     float object = meet_object(to_world_point(p), to_world_direction(ray.direction), end, object_color);
