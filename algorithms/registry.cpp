@@ -18,6 +18,7 @@
 #include "algorithms/sampling_hulls/sampling_hulls.hpp"
 #include "algorithms/screen_space_refraction/screen_space_refraction.hpp"
 #include "algorithms/technique.hpp"
+#include "algorithms/translucent_relief/bench/bare_relief.hpp"
 #include "algorithms/translucent_relief/translucent_relief.hpp"
 #include "algorithms/volume_slices/volume_slices.hpp"
 
@@ -99,7 +100,7 @@ static const std::array kTechniques{
 
 // One line for each technique that `pellucid bench` can time; the order is that of the help text.
 static const BareFrameInfo* const kBareFrames[] = {&sampling_hulls::bare_frame(), &distance_impostors::bare_frame(),
-                                                   &geocube::bare_frame()};
+                                                   &geocube::bare_frame(), &translucent_relief::bare_frame()};
 
 std::span<const BareFrameInfo* const> bare_frames() {
   return kBareFrames;

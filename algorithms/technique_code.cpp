@@ -6,7 +6,7 @@
 
 #include "algorithms/scene/files/hash.hpp"
 #include "gl/program.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 
 namespace pellucid {
 

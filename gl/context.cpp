@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "gl/current_context.hpp"
-#include "gl/egl_devices.hpp"
+#include "gl/devices/egl_devices.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::gl {

@@ -7,7 +7,7 @@
 
 #include "gl/error.hpp"
 #include "gl/program.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 
 namespace pellucid::gl {
 

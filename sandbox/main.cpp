@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   sandbox::add_slab(root, commands);
   sandbox::add_plot(root, commands);
   sandbox::add_reproduce(root, commands);
+  sandbox::add_bundle(root, commands);
   sandbox::add_view(root, commands);
 
   try {

@@ -154,9 +154,9 @@ void ForwardPass::compile(const std::vector<Light>& lights) {
   for (std::size_t i = 0; i < kMaxLights; ++i) {
     const char* comma = i == 0 ? "" : ", ";
     const bool given = i < lights.size();
-    kinds += comma + std::to_string(given ? static_cast<int>(lights[i].kind) : 0);
-    first_layers += comma + std::to_string(given ? layers[i] : -1);
-    beyond_map += std::string(comma) + (given && lit_beyond_map(lights[i]) ? "true" : "false");
+    kinds.append(comma).append(std::to_string(given ? static_cast<int>(lights[i].kind) : 0));
+    first_layers.append(comma).append(std::to_string(given ? layers[i] : -1));
+    beyond_map.append(comma).append(given && lit_beyond_map(lights[i]) ? "true" : "false");
   }
   gl::Defines defines{{"LIGHT_COUNT", std::to_string(lights.size())}, {"LIGHT_KINDS", kinds}};
   if (shadowed_) {

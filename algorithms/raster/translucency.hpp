@@ -6,7 +6,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "algorithms/scattering/key_chain.hpp"
+#include "algorithms/key_maps/key_chain.hpp"
 #include "algorithms/scattering/transfer_table.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"

@@ -11,7 +11,7 @@
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
-#include "algorithms/reference/scattering.hpp"
+#include "algorithms/reference/media/scattering.hpp"
 
 namespace pellucid {
 namespace {

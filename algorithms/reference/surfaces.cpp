@@ -23,7 +23,7 @@
 #include "algorithms/reference/pixel_samples.hpp"
 #include "algorithms/reference/ray_tree.hpp"
 #include "algorithms/reference/reference.hpp"
-#include "algorithms/reference/relief_surfaces.hpp"
+#include "algorithms/reference/relief/relief_surfaces.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/reference/surface_point.hpp"
 #include "algorithms/reference/translucent_path.hpp"

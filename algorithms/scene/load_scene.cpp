@@ -18,7 +18,7 @@
 #include "algorithms/scene/meshes/mesh_file.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/toml/scene_source.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 
 namespace pellucid {
 
@@ -104,7 +104,8 @@ Scene load_scene(const std::string& name_or_path) {
   } else {
     description->file.shown = find_scene(name_or_path);
     text = find_resource(description->file.shown).value_or("");
-    folder = (fs::path(PELLUCID_SOURCE_DIR) / description->file.shown).parent_path();
+    folder =
+        fs::path(description->file.shown).parent_path();  // names it in messages; a built-in scene has assets alone
   }
   const std::string name = fs::path(description->file.shown).stem().string();
   parse_scene(text, folder, *description);

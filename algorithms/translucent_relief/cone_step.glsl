@@ -6,7 +6,7 @@
 // as the map repeats. The chord of the last bracket follows where a step ends in the surface.
 float cone_at(int layer, vec2 uv);
 float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, float bias, int steps, int refinements,
-                    inout int taken) {
+                    inout float taken) {
   if (!(range.x < range.y)) return -1.0;
   float across = length(ray.direction.xy * ray.uv_per_metre * tiles);  // of the map, for each metre
   float upward = ray.direction.z / range_m;
@@ -14,11 +14,11 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
   float before = range.x, height_before = 0.0, t = range.x;
   for (int i = 0; i < steps; ++i) {
     float height = above(layer, ray, t);
-    ++taken;
+    taken += 1.0;
     if (height < -bias && t > range.x) {
       for (int k = 0; k < refinements; ++k) {
         float middle = 0.5 * (before + t), at_middle = above(layer, ray, middle);
-        ++taken;
+        taken += 1.0;
         if (at_middle < 0.0) {
           t = middle;
           height = at_middle;

@@ -20,11 +20,22 @@ layout(binding = 9) uniform sampler2D medium_acceleration;
 uniform vec2 tiling;
 uniform bool cut;
 
+#ifdef COUNT
+float fetches = 0.0, environment_fetches = 0.0;
+#define FETCHED(n) fetches += float(n)
+#else
+#define FETCHED(n)
+#endif
+
 const int kSolid = 0, kMedium = 1, kEither = 2;
 
-float solid_height(vec2 uv) { return solid_range.x + solid_range.y * textureLod(solid_heights, uv * tiling, 0.0).r; }
+float solid_height(vec2 uv) {
+  FETCHED(1);
+  return solid_range.x + solid_range.y * textureLod(solid_heights, uv * tiling, 0.0).r;
+}
 float medium_height(vec2 uv) {
 #ifdef TWO_LAYERS
+  FETCHED(1);
   return medium_range.x + medium_range.y * textureLod(medium_heights, uv * tiling, 0.0).r;
 #else
   return -1e9;
@@ -41,6 +52,7 @@ float above(int layer, Ray ray, float t) {
 }
 
 vec2 extremes(int layer, ivec2 cell, int level) {
+  FETCHED(1);
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
     ivec2 size = max(textureSize(medium_heights, 0) >> level, ivec2(1));
@@ -61,6 +73,7 @@ int pyramid_top(int layer) {
   return findMSB(max(size.x, size.y));
 }
 vec4 corners(int layer, ivec2 cell) {
+  FETCHED(4);
   ivec2 last = map_size(layer) - 1;
   ivec2 a = cell & last, b = (cell + 1) & last;
 #ifdef TWO_LAYERS
@@ -77,6 +90,7 @@ vec4 corners(int layer, ivec2 cell) {
                                               texelFetch(solid_heights, b, 0).r);
 }
 float cone_at(int layer, vec2 uv) {
+  FETCHED(1);
 #ifdef TWO_LAYERS
   if (layer == kMedium) return textureLod(medium_acceleration, uv * tiling, 0.0).r;
 #endif
@@ -111,10 +125,12 @@ vec3 normal_of(vec4 texel, bool normal_map, float range, vec2 uv_per_metre) {
   return normalize(normal_map ? texel.xyz : vec3(-range * texel.xy * tiling * uv_per_metre, 1.0));
 }
 vec3 solid_normal(vec2 uv, vec2 uv_per_metre) {
+  FETCHED(1);
   return normal_of(textureLod(solid_normals, uv * tiling, 0.0), solid_normal_map, solid_range.y, uv_per_metre);
 }
 vec3 medium_normal(vec2 uv, vec2 uv_per_metre) {
 #ifdef TWO_LAYERS
+  FETCHED(1);
   return normal_of(textureLod(medium_normals, uv * tiling, 0.0), medium_normal_map, medium_range.y, uv_per_metre);
 #else
   return vec3(0.0, 0.0, 1.0);

@@ -1,7 +1,10 @@
 // Light on its way to a point between or on the layers (Timonen, Sec. 3.1, Algorithm 2). C++ twin, by exact hits:
-// algorithms/reference/relief_tracer.cpp.
+// algorithms/reference/relief/relief_tracer.cpp.
 #include "algorithms/shaders/optics.glsl"
 #include "algorithms/translucent_relief/layers.glsl"
+#ifdef SCATTERING
+#include "algorithms/translucent_relief/scattering.glsl"
+#endif
 
 uniform float outside_index;  // n1
 uniform float index;          // n2
@@ -12,7 +15,7 @@ uniform float steps_at_normal;  // share of the steps that a ray along the norma
 uniform int boundaries;         // of the medium, that a light ray may pass
 
 const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
-ivec4 taken = ivec4(0);  // heights asked for, by kind of ray
+vec4 taken = vec4(0.0);  // heights asked for, by kind of ray
 
 int steps_of(int kind, Ray ray) {
   float share = mix(1.0, steps_at_normal, abs(ray.direction.z));
@@ -20,7 +23,7 @@ int steps_of(int kind, Ray ray) {
 }
 
 float find_crossing(int layer, Ray ray, float from, float side, int kind) {
-  int count = 0;
+  float count = 0.0;
   float t;
   vec2 range = clip_to_layer(layer, ray, from);
 #if SEARCH == 1
@@ -60,7 +63,11 @@ vec3 light_reaching(Ray frame, vec3 p, vec3 to_light, float side) {
   }
   if (side < 0.0) inside += max(clip_to_layer(kMedium, ray, from).y - from, 0.0);
 #ifdef ABSORPTION
+#ifdef SCATTERING
+  return share * scattered_transmittance(inside);
+#else
   return share * transmitted(absorption, inside);
+#endif
 #endif
   return vec3(share);
 #endif

@@ -1,5 +1,5 @@
 // Rays against a height field through a pyramid of its greatest and least heights (Tevs et al. 2008), exact in the cells
-// between texel centres. C++ twin: HeightField::crossing (algorithms/reference/height_field.cpp), without the pyramid.
+// between texel centres. C++ twin: HeightField::crossing (algorithms/reference/relief/height_field.cpp), without the pyramid.
 // The includer defines extremes(), corners(), map_size() and pyramid_top().
 
 vec2 extremes(int layer, ivec2 cell, int level);  // greatest and least height [m] of the cell of 2^level × 2^level
@@ -28,7 +28,7 @@ float first_fall(float a, float b, float c, float end, bool at_begin) {
 }
 
 // As linear_crossing(); `visits` bounds the cells of the pyramid that are asked, and `taken` counts them.
-float max_mip_crossing(int layer, Ray ray, vec2 tiles, vec2 range, float side, int visits, inout int taken) {
+float max_mip_crossing(int layer, Ray ray, vec2 tiles, vec2 range, float side, int visits, inout float taken) {
   if (!(range.x < range.y)) return -1.0;
   // In units of cells, whole numbers at the texels' centres.
   vec2 texels = tiles * vec2(map_size(layer));
@@ -47,7 +47,7 @@ float max_mip_crossing(int layer, Ray ray, vec2 tiles, vec2 range, float side, i
     vec2 borders = ((cell + max(forward, 0.0)) * width - start) * inverse;
     float end = min(max(min(borders.x, borders.y), t), range.y);
     vec2 bounds = extremes(layer, ivec2(cell), level);
-    ++taken;
+    taken += 1.0;
     float z0 = z_at(ray, t), z1 = z_at(ray, end);
     if (side > 0.0 ? min(z0, z1) > bounds.x : max(z0, z1) < bounds.y) {
       t = max(end, t + 1e-6 * abs(range.y));

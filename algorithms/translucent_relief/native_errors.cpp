@@ -30,7 +30,8 @@ SearchErrors::SearchErrors(int width, int height) {
   const auto add = [&](const char* name, const char* unit, const char* doc) {
     maps_.push_back(make_native_map(name, unit, doc, width, height));
   };
-  add("hit_error_m", "m", "distance along the view ray between the first hit and the true one, where none is missed");
+  add("first_hit_error_m", "m",
+      "distance along the view ray between the first hit and the true one, where none is missed");
   add("missed", "", "1 where the view ray stepped through what it meets first");
   add("occlusion_error", "of the light", "difference between the first light's share at the hit and the true one");
   add("heights_taken", "heights", "heights that the view ray asked for");

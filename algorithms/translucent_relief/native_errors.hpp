@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "algorithms/reference/relief_tracer.hpp"
+#include "algorithms/reference/relief/relief_tracer.hpp"
 #include "algorithms/technique.hpp"
 
 namespace pellucid::translucent_relief {
@@ -23,9 +23,9 @@ class SearchErrors {
   SearchErrors(int width, int height);
   /// The pixels of one instance.
   void add(const SearchReport&, const ReliefTracer&);
-  /// `hit_error_m_mean` …, of the rays that found the surface that they meet; `missed_share`: rays that stepped through
-  /// a feature, to end more than one step of the search behind it, or nowhere; `occlusion_error_mean` …: of the first
-  /// light's share at the hit; `heights_taken_mean` …; `relief_pixels`.
+  /// `first_hit_error_m_mean` …, of the rays that found the surface that they meet; `missed_share`: rays that stepped
+  /// through a feature, to end more than one step of the search behind it, or nowhere; `occlusion_error_mean` …: of the
+  /// first light's share at the hit; `heights_taken_mean` …; `relief_pixels`.
   void write(nlohmann::json& out) const;
   std::vector<NativeMap> maps() && { return std::move(maps_); }
 

@@ -45,6 +45,13 @@ mat3 to_frame;  // rows: along u, along v, normal
 vec3 to_world_direction(vec3 d) { return d * to_frame; }
 vec3 to_world_point(vec3 p) { return world_position + p * to_frame; }
 
+vec3 sky_radiance(vec3 direction) {
+#ifdef COUNT
+  environment_fetches += 1.0;
+#endif
+  return environment_radiance(direction);
+}
+
 // The opaque objects' shadows, at the place where light comes through the mesh.
 float object_visibility(int i, vec3 p, vec3 to_light) {
   if (!casts_shadow(i)) return 1.0;
@@ -58,6 +65,7 @@ float phong(vec2 settings, vec3 reflected, vec3 to_light) {
 
 // A point of the solid as it is seen along `v`; the paper's SAMPLE. `occlusion`: of the first light.
 vec3 solid_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
+  FETCHED(1);
   vec2 uv = frame.uv + p.xy * frame.uv_per_metre;
   vec3 n = solid_normal(uv, frame.uv_per_metre);
   vec3 albedo = solid_albedo * tint * textureLod(solid_colors, uv * tiling, 0.0).rgb;
@@ -103,6 +111,33 @@ float meet_solid(Ray ray, int kind, bool planar) {
   return t <= range.y ? t : -1.0;
 }
 
+#ifdef SCATTERING
+// The solid's radiance `color`, met after `t`, as it is seen through a path in the medium: a part of it sharp, a part
+// blurred over as much of the solid as the Gaussian spreads it, a part as its mean; and what the medium itself sends back of
+// the light that falls on `p` with the normal `n`. Blurred are the solid's colours, not its light.
+vec3 through_scattering(Ray frame, vec3 p, vec3 n, Ray ray, float t, float path, vec3 color) {
+  vec2 uv = uv_at(ray, t) * tiling;
+  vec2 texels_per_metre = vec2(textureSize(solid_colors, 0)) * tiling * frame.uv_per_metre;
+  float texels = max(texels_per_metre.x, texels_per_metre.y);
+  vec3 here = max(textureLod(solid_colors, uv, 0.0).rgb, vec3(1e-4)), seen = vec3(0.0);
+  for (int c = 0; c < 3; ++c) {
+    vec4 fit = transfer_row(extinction[c] * path, c);
+    float lod = log2(max(path * tan(min(fit.z, 1.4)) * texels, 1.0));
+    float blurred = textureLod(solid_colors, uv, lod)[c], mean = textureLod(solid_colors, uv, 16.0)[c];
+    seen[c] = color[c] * (fit.x + (fit.y * blurred + fit.w * mean) / here[c]);
+  }
+  vec3 incident = ambient_count.rgb;
+  for (int i = 0; i < LIGHT_COUNT; ++i) {
+    vec3 to_light;
+    vec3 irradiance = light_irradiance(i, to_world_point(p), to_light) / kPi;
+    to_light = to_frame * to_light;
+    float cosine = dot(n, to_light);
+    if (cosine > 0.0) incident += irradiance * cosine * light_reaching(frame, p, to_light, 1.0) * object_visibility(i, p, to_light);
+  }
+  return seen + scattered_reflectance(path) * incident;
+}
+#endif
+
 vec3 medium_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
   vec2 uv_p = frame.uv + p.xy * frame.uv_per_metre;
   vec3 n = facing(medium_normal(uv_p, frame.uv_per_metre), v);
@@ -116,7 +151,7 @@ vec3 medium_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
   if (reflected_share < 1.0) {
     Ray ray = Ray(p, refract(v, n, eta), frame.uv, frame.uv_per_metre);
     float t = meet_solid(ray, kRefracted, planar_refractions);
-    vec3 color = t < 0.0 ? environment_radiance(to_world_direction(ray.direction))
+    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(ray.direction))
                          : solid_radiance(frame, ray.origin + t * ray.direction, ray.direction, occlusion);
     float end = t < 0.0 ? max(clip_to_layer(kMedium, ray, 0.0).y, 0.0) : t;
 #ifdef OBJECTS
@@ -129,7 +164,12 @@ vec3 medium_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
 #endif
 #ifdef ABSORPTION
     float leaves = find_crossing(kMedium, ray, 0.0, -1.0, kRefracted);
-    color *= transmitted(absorption, leaves < 0.0 ? end : min(leaves, end));
+    float inside = leaves < 0.0 ? end : min(leaves, end);
+#ifdef SCATTERING
+    color = t < 0.0 ? color * scattered_transmittance(inside) : through_scattering(frame, p, n, ray, t, inside, color);
+#else
+    color *= transmitted(absorption, inside);
+#endif
 #endif
     sum += (1.0 - reflected_share) * color;
   }
@@ -139,7 +179,7 @@ vec3 medium_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
   {
     Ray ray = Ray(p, mirrored, frame.uv, frame.uv_per_metre);
     float t = meet_solid(ray, kReflected, planar_reflections);
-    vec3 color = t < 0.0 ? environment_radiance(to_world_direction(mirrored))
+    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(mirrored))
                          : solid_radiance(frame, p + t * mirrored, mirrored, unused);
 #ifdef OBJECTS
     vec3 object_color;
@@ -183,7 +223,7 @@ void main() {
   vec3 through;
   bool down = bend_through_air(mesh_uv, 1.0 / metres, through, v);
   if (!down) {
-    radiance = vec4(environment_radiance(to_world_direction(v)), 1.0);
+    radiance = vec4(sky_radiance(to_world_direction(v)), 1.0);
     gl_FragDepth = gl_FragCoord.z;
     return;
   }
@@ -224,7 +264,7 @@ void main() {
   vec3 to_light = vec3(0.0, 0.0, -1.0);
   if (LIGHT_COUNT > 0) light_irradiance(0, to_world_point(p), to_light);
   to_light = to_frame * to_light;
-  report_scale = vec4(metres, float(taken[kView]), 1.0);
+  report_scale = vec4(metres, taken[kView], 1.0);
   vec3 share = vec3(0.0);
   if (t >= 0.0) share = light_reaching(ray, p, to_light, 1.0);
   report_light = vec4(to_light, max(share.r, max(share.g, share.b)));
@@ -233,9 +273,13 @@ void main() {
   if (show == kShowOcclusion) color = vec3(occlusion);
   if (show == kShowSteps) {
     float most = dot(step_counts, vec4(1.0));
-    color = vec3(float(taken.x + taken.y + taken.z + taken.w) / most);
+    color = vec3(dot(taken, vec4(1.0)) / most);
   }
+#ifdef COUNT
+  radiance = vec4(fetches, environment_fetches, 1.0, 1.0);
+#else
   radiance = vec4(color, 1.0);
+#endif
   vec4 clip = world_to_clip * vec4(to_world_point(p), 1.0);
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
 #endif

@@ -1,6 +1,7 @@
 #include "algorithms/translucent_relief/relief_maps.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -12,8 +13,12 @@
 namespace pellucid::translucent_relief {
 namespace {
 
-gl::Texture make_map(const char* label, gl::Format format, const Image& image) {
-  gl::Texture texture = gl::Texture::make_2d(label, format, image.width, image.height);
+int level_count(const Image& image) {
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(image.width, image.height))));
+}
+
+gl::Texture make_map(const char* label, gl::Format format, const Image& image, int levels = 1) {
+  gl::Texture texture = gl::Texture::make_2d(label, format, image.width, image.height, levels);
   const auto channels = static_cast<std::size_t>(gl::channels(format)),
              given = static_cast<std::size_t>(image.channels);
   std::vector<float> texels(image.pixels.size() / given * channels, 0.0F);
@@ -62,14 +67,17 @@ void ReliefMaps::upload(const ReliefLayer& from, Search search, Animation* anima
 }
 
 void ReliefMaps::update(const Relief& relief, Search search, Animation* animation) {
+  if (relief.scatters()) transfer_.update(relief);
   if (revision_ == relief.maps_revision && solid_.heights) return;
   revision_ = relief.maps_revision;
   upload(relief.solid, search, animation, solid_);
   if (relief.translucent) upload(*relief.translucent, search, animation, medium_);
   Image white(1, 1, 3);
   white.pixels = {1, 1, 1};
-  colors_ =
-      make_map("relief colours", gl::Format::rgba32f, relief.solid.colors.width > 0 ? relief.solid.colors : white);
+  const Image& colors = relief.solid.colors.width > 0 ? relief.solid.colors : white;
+  colors_ = make_map("relief colours", gl::Format::rgba32f, colors, level_count(colors));
+  colors_.generate_mipmaps();
+  colors_.set_sampling(gl::Filter::mipmap, gl::Wrap::repeat);
   if (relief.air) {
     air_ = gl::Texture::make_3d("relief air", gl::Format::r32f, relief.air->size.x, relief.air->size.y,
                                 relief.air->size.z);
@@ -96,6 +104,7 @@ void ReliefMaps::bind(const Relief& relief, const gl::Program& program) const {
     program.set("air_height", relief.air->height_m);
   }
   if (!relief.translucent) return;
+  if (relief.scatters()) transfer_.bind(relief, program);
   medium_.heights.bind(4);
   medium_.normals.bind(6);
   if (medium_.acceleration) medium_.acceleration.bind(9);

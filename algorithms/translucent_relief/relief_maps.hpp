@@ -4,6 +4,7 @@
 
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/translucent_relief/animation.hpp"
+#include "algorithms/translucent_relief/transfer.hpp"
 #include "algorithms/translucent_relief/translucent_relief.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
@@ -28,6 +29,7 @@ class ReliefMaps {
 
   Layer solid_, medium_;
   gl::Texture colors_, air_;
+  Transfer transfer_;
   float mean_solid_ = 0;  // of the heights in [0, 1]
   std::uint64_t revision_ = 0;
 };

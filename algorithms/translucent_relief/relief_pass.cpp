@@ -38,6 +38,8 @@ gl::Defines ReliefPass::defines(const Relief& relief, const ForwardPass& forward
   if (two_layers(relief)) defines.emplace_back("TWO_LAYERS", "1");
   if (parameters_.occlusion && parameters_.mapping == Mapping::relief) defines.emplace_back("OCCLUSION", "1");
   if (parameters_.absorption && two_layers(relief)) defines.emplace_back("ABSORPTION", "1");
+  if (parameters_.scattering && parameters_.absorption && two_layers(relief) && relief.scatters())
+    defines.emplace_back("SCATTERING", "1");
   if (objects_) defines.emplace_back("OBJECTS", "1");
   if (parameters_.caustics && two_layers(relief)) defines.emplace_back("CAUSTICS", "1");
   if (relief.air && parameters_.air_steps > 0) defines.emplace_back("AIR", "1");
@@ -177,6 +179,38 @@ SearchErrors ReliefPass::compare_searches(const Scene& scene, const Camera& came
     errors.add({start.read(), ray.read(), scale.read(), light.read()}, ReliefTracer(scene, instance.relief, lights));
   }
   return errors;
+}
+
+ReliefPass::FetchCounts ReliefPass::count_fetches(const Scene& scene, const Camera& camera,
+                                                  const ForwardPass& forward) {
+  bare_ = gl::Program("bare relief", {kVertex, "algorithms/translucent_relief/bench/bare_relief.frag.glsl"},
+                      forward.environment_defines());
+  fetch_counts_ = gl::Texture::make_2d("fetch counts", gl::Format::rgba32f, camera.width, camera.height);
+  const gl::Texture depth = gl::Texture::make_2d("count depth", gl::Format::depth32f, camera.width, camera.height);
+  const gl::Framebuffer framebuffer("fetch counts", {&fetch_counts_}, &depth);
+  framebuffer.bind();
+  framebuffer.clear_color(0, {0, 0, 0, 0});
+  framebuffer.clear_depth();
+  for (const Instance& instance : scene.instances) {
+    if (instance.relief < 0) continue;
+    gl::Defines wanted = defines(scene.reliefs[static_cast<std::size_t>(instance.relief)], forward);
+    wanted.emplace_back("COUNT", "1");
+    draw_mesh(scene, instance, camera, forward, gl::Program("relief counts", {kVertex, kFragment}, wanted));
+  }
+  FetchCounts counts;
+  const std::vector<float> texels = fetch_counts_.read();
+  for (std::size_t i = 0; i < texels.size(); i += 4) {
+    counts.pixels += static_cast<double>(texels[i + 2]);
+    counts.fetches += static_cast<double>(texels[i] + texels[i + 1]);
+  }
+  return counts;
+}
+
+void ReliefPass::draw_bare(const Scene& scene, const Camera& camera, const ForwardPass& forward) const {
+  fetch_counts_.bind(14);
+  for (const Instance& instance : scene.instances) {
+    if (instance.relief >= 0) draw_mesh(scene, instance, camera, forward, bare_);
+  }
 }
 
 std::string ReliefPass::reload_shaders() {

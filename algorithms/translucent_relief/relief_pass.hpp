@@ -27,6 +27,13 @@ class ReliefPass {
   void draw(const Scene&, const Camera&, const ForwardPass&, const Target&);
   std::string reload_shaders();
 
+  /// For `pellucid bench`: counts the fetches of draw() and keeps the counts for draw_bare(), which makes as many.
+  struct FetchCounts {
+    double pixels = 0, fetches = 0;
+  };
+  FetchCounts count_fetches(const Scene&, const Camera&, const ForwardPass&);
+  void draw_bare(const Scene&, const Camera&, const ForwardPass&) const;
+
   /// The view rays of such a frame beside exact ones.
   SearchErrors compare_searches(const Scene&, const Camera&, const ForwardPass&) const;
 
@@ -45,6 +52,8 @@ class ReliefPass {
   Animation animation_;
   bool objects_ = false;  // some opaque objects may be refracted
   gl::Texture object_color_, object_depth_;
+  gl::Program bare_;
+  gl::Texture fetch_counts_;
   std::map<gl::Defines, gl::Program> programs_;
   std::vector<const gl::Program*> program_of_;  // by relief
 };

@@ -17,18 +17,14 @@ float above(int layer, Ray ray, float t);
 // The part of the ray that lies in a slab of heights and, where rays do not leave the mesh's texture, in [0, 1]² of it;
 // empty where x > y. `from`: where the ray begins.
 vec2 clip_ray(Ray ray, float low, float high, bool cut, float from) {
-  vec2 range = vec2(from, 1e9);
   vec3 position = vec3(ray.uv + ray.origin.xy * ray.uv_per_metre, ray.origin.z);
   vec3 speed = vec3(ray.direction.xy * ray.uv_per_metre, ray.direction.z);
-  vec3 least = vec3(0.0, 0.0, low), most = vec3(1.0, 1.0, high);
-  for (int axis = cut ? 0 : 2; axis < 3; ++axis) {
-    if (abs(speed[axis]) < 1e-9) {
-      if (position[axis] < least[axis] || position[axis] > most[axis]) return vec2(1.0, 0.0);
-      continue;
-    }
-    vec2 at = (vec2(least[axis], most[axis]) - position[axis]) / speed[axis];
-    range = vec2(max(range.x, min(at.x, at.y)), min(range.y, max(at.x, at.y)));
-  }
+  speed = mix(speed, vec3(1e-9), lessThan(abs(speed), vec3(1e-9)));
+  // No loop: llvmpipe's compiler takes exponentially long for many loops one after the other.
+  vec3 a = (vec3(0.0, 0.0, low) - position) / speed, b = (vec3(1.0, 1.0, high) - position) / speed;
+  vec3 first = min(a, b), last = max(a, b);
+  vec2 range = vec2(max(from, first.z), min(1e9, last.z));
+  if (cut) range = vec2(max(range.x, max(first.x, first.y)), min(range.y, min(last.x, last.y)));
   return range;
 }
 
@@ -37,7 +33,7 @@ vec2 clip_ray(Ray ray, float low, float high, bool cut, float from) {
 // What is less than `bias` metres beyond counts as on it, for the sake of rays that start there. `taken` counts the heights
 // that were asked for.
 float linear_crossing(int layer, Ray ray, vec2 range, float side, float bias, int steps, int refinements,
-                      inout int taken) {
+                      inout float taken) {
   if (!(range.x < range.y)) return -1.0;
   float stride = (range.y - range.x) / float(steps);
   float before = range.x, after = range.x, height_before = 0.0, height_after = 0.0;
@@ -45,7 +41,7 @@ float linear_crossing(int layer, Ray ray, vec2 range, float side, float bias, in
   for (int i = 1; i <= steps; ++i) {
     after = range.x + stride * float(i);
     height_after = side * above(layer, ray, after);
-    ++taken;
+    taken += 1.0;
     if (height_after < -bias) {
       found = true;
       break;
@@ -57,7 +53,7 @@ float linear_crossing(int layer, Ray ray, vec2 range, float side, float bias, in
   for (int i = 0; i < refinements; ++i) {
     float middle = 0.5 * (before + after);
     float height = side * above(layer, ray, middle);
-    ++taken;
+    taken += 1.0;
     if (height < 0.0) {
       after = middle;
       height_after = height;

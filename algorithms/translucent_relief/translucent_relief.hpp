@@ -32,6 +32,7 @@ struct Parameters {
   int light_refinements = 4;
   float steps_at_normal = 1.0F;
   int boundaries = 3;
+  bool scattering = true;
   bool caustics = false;
   int caustic_resolution = 256;
   int object_steps = 32;
@@ -91,6 +92,10 @@ struct Parameters {
     visit(PARAM(boundaries), {.range = {1, 16},
                               .cite = "Algorithm 2",
                               .doc = "boundaries of the medium that a light ray passes; those beyond are left out"});
+    visit(PARAM(scattering), {.cite = "Sec. 6, future work; Chan and Wang 2005, Sec. 3.3",
+                              .doc = "with absorption: let media that scatter blur the solid and shine themselves, by "
+                                     "the transfer functions of a slab; else they absorb alone",
+                              .when = Change::program});
     visit(PARAM(caustics),
           {.cite = "Sec. 4.1, future work",
            .doc = "let the medium's surface gather directional lights on the solid under it, on flat meshes, "

@@ -66,7 +66,7 @@ Color ink_on(const Color& ground) {
 std::string cell_label(double value) {
   const double size = std::abs(value);
   if (size < kLeastShown) return "0";
-  if (size >= 1e5 || size < 1e-3) return power_label(size).insert(0, value < 0 ? "-" : "");
+  if (size >= 1e5 || size < 1e-3) return fmt::format("{}{}", value < 0 ? "-" : "", power_label(size));
   const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(size))), 0, 5);
   return fmt::format("{:.{}f}", value, decimals);
 }

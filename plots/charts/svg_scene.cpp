@@ -98,7 +98,7 @@ bool built_in_font_has(const std::string& text) {
 const std::string& full_font(bool bold) {
   static const auto find = [](const char* pattern) {
     const sweeps::ProcessResult result = sweeps::run_process({"fc-match", "--format=%{file}", pattern});
-    return result.found && result.status == 0 ? result.output : std::string();
+    return result.status == 0 ? result.output : std::string();
   };
   static const std::string plain = find("DejaVu Sans:style=Book"), heavy = find("DejaVu Sans:style=Bold");
   return bold ? heavy : plain;

@@ -173,8 +173,10 @@ Figure read_figure(const sweeps::PaperEntry& entry) {
   std::string name;
   reader.text("name", name);  // read_entry found it by that
   reader.text("title", figure.title, Need::required);
-  reader.text("doc", figure.doc, Need::required);
-  reader.text("sweep", figure.sweep, Need::required);
+  figure.doc = figure.title;
+  reader.text("doc", figure.doc);
+  if (entry.paper->sweeps.size() == 1) figure.sweep = entry.paper->sweeps.front().name;
+  reader.text("sweep", figure.sweep, figure.sweep.empty() ? Need::required : Need::optional);
   const auto known = std::any_of(entry.paper->sweeps.begin(), entry.paper->sweeps.end(),
                                  [&](const sweeps::PaperSweep& sweep) { return sweep.name == figure.sweep; });
   if (!known) reader.fail("sweep", fmt::format("'{}' is none of the paper's sweeps", figure.sweep));

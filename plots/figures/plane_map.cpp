@@ -136,7 +136,7 @@ HeatMap map_of_rows(const std::vector<json>& all, const PlaneMap& wanted, const 
     }
     if (found.row == nullptr) continue;
     map.marks.push_back({cell_of(*found.row), mark.label});
-    if (!mark.note.empty()) map.note += " " + fill(mark.note, found);
+    if (!mark.note.empty()) map.note.append(" ").append(fill(mark.note, found));
   }
   return map;
 }

@@ -18,6 +18,7 @@
 #include "gl/error.hpp"
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
+#include "sweeps/bench/ceilings.hpp"
 #include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {
@@ -120,7 +121,74 @@ void print_reference(const BenchReference& reference) {
       "rays per pixel", reference.rays_per_pixel, reference.depth, reference.depth == 1 ? "" : "s", reference.build_ms);
 }
 
+ordered_json ceilings_json(const std::vector<sweeps::Ceiling>& ceilings) {
+  ordered_json out = ordered_json::array();
+  for (const sweeps::Ceiling& c : ceilings)
+    out.push_back({{"what", c.what}, {"detail", c.detail}, {"per_second", c.rate}});
+  return out;
+}
+
+void print_ceilings(const std::vector<sweeps::Ceiling>& ceilings) {
+  for (const sweeps::Ceiling& c : ceilings)
+    fmt::print("  {:<12} {:<20} {:10.3f} {}\n", c.what, c.detail, c.rate / c.scale, c.unit);
+}
+
+/// The device's ceilings, and with `all` every technique that has a bare shader, on its own scene, beside its ceiling.
+int bench_summary(const Options& options, bool all) {
+  const Size size = parse_size(options.size);
+  const gl::Context context({.device = options.device});
+  const std::vector<sweeps::Ceiling> ceilings = sweeps::measure_ceilings();
+  double fetches_per_s = 0;
+  for (const sweeps::Ceiling& c : ceilings) {
+    if (c.what == "fetches") fetches_per_s = std::max(fetches_per_s, c.rate);
+  }
+  ordered_json techniques = ordered_json::array();
+  if (!options.json) {
+    fmt::print("{}\nceilings\n", context.device().renderer);
+    print_ceilings(ceilings);
+    if (all) {
+      fmt::print("techniques at {}\n  {:<20} {:<16} {:>10} {:>24} {:>10} {:>12}\n", options.size, "", "scene",
+                 "frame ms", "frame / bare", "Gfetch/s", "of ceiling");
+    }
+  }
+  for (const BareFrameInfo* bare : bare_frames()) {
+    if (!all) break;
+    nlohmann::json recipe;
+    const sweeps::BenchRequest request{"", options.view, size.width, size.height, {}, options.frames, false};
+    const BenchResult r = sweeps::bench(find_technique(bare->technique), request, recipe);
+    const double per_s =
+        r.fetches_per_pixel * static_cast<double>(size.width) * size.height / (r.method.median_ms / 1000);
+    if (options.json) {
+      techniques.push_back({{"technique", bare->technique},
+                            {"scene", bare->scene},
+                            {"method", time_json(r.method)},
+                            {"bare", time_json(r.bare)},
+                            {"ratio", ratio_json(r.ratio)},
+                            {"ratio_without_opaque", ratio_json(r.own)},
+                            {"fetches_per_second", per_s},
+                            {"share_of_fetch_ceiling", per_s / fetches_per_s}});
+      continue;
+    }
+    fmt::print("  {:<20} {:<16} {:10.3f} {:>24} {:10.3f} {:>10.1f} %\n", bare->technique, bare->scene,
+               r.method.median_ms,
+               fmt::format("{:.3f} [{:.3f}, {:.3f}]", r.ratio.median, r.ratio.ci95.low, r.ratio.ci95.high), per_s / 1e9,
+               100 * per_s / fetches_per_s);
+  }
+  if (options.json) {
+    ordered_json out{{"device", context.device().renderer},
+                     {"driver", context.device().version},
+                     {"ceilings", ceilings_json(ceilings)}};
+    if (all) out["techniques"] = techniques;
+    fmt::print("{}\n", out.dump(2));
+  } else if (all) {
+    fmt::print("a technique's own ceiling is its bare shader: the same fetches and blends, and nothing else\n");
+  }
+  return kDone;
+}
+
 int bench(const Options& options) {
+  if (options.technique == "ceilings" || options.technique == "all")
+    return bench_summary(options, options.technique == "all");
   const Size size = parse_size(options.size);
   const TechniqueInfo& info = find_technique(options.technique);
   const BareFrameInfo& bare = sweeps::bare_frame_of(info);
@@ -189,7 +257,11 @@ void add_bench(cli::App& root, std::vector<Command>& commands) {
       "bench",
       "Time a technique's frame against a bare shader with the same fetches and blends, and against VTK or "
       "ray tracing");
-  app->add_option("technique", options->technique, fmt::format("The technique: {}", fmt::join(names, ", ")))
+  app->add_option(
+         "technique", options->technique,
+         fmt::format("The technique: {}; or `ceilings` for what the device can do at most, or `all` for both on "
+                     "one page",
+                     fmt::join(names, ", ")))
       ->required();
   app->add_option("--scene", options->scene,
                   "A scene's name (pellucid list scenes) or a .toml file; the technique's own without it");
@@ -207,9 +279,8 @@ void add_bench(cli::App& root, std::vector<Command>& commands) {
   app->add_option("--device", options->device, "EGL device (pellucid devices)");
   app->add_flag("--json", options->json, "Print the measurement as JSON");
   app->footer(
-      "Example: pellucid bench sampling_hulls -s hulls=4 -s samples=8\n"
-      "Example: pellucid bench distance_impostors -s iterations=2 --size 700x700\n"
-      "Example: pellucid bench geocube --scene glass_head --size 512x512\n"
+      "Example: pellucid bench TECHNIQUE -s NAME=VALUE --size 512x512\n"
+      "Example: pellucid bench all --frames 24\n"
       "Blocks of frames alternate between the technique, the bare shader and the opaque passes that both share. A "
       "ratio\n"
       "is the median over the blocks, so that it may differ a little from that of the medians. Times of different\n"
@@ -217,7 +288,7 @@ void add_bench(cli::App& root, std::vector<Command>& commands) {
       "Against VTK the scene's volume is drawn alone and white over black, and VTK's sample distance is the longest "
       "at\n"
       "which its error against the reference is no larger than the technique's. VTK needs no display for it.\n"
-      "Against ray tracing (distance_impostors) the reference traces the same picture between the blocks, one tree of "
+      "Against ray tracing the reference traces the same picture between the blocks, one tree of "
       "rays\n"
       "per pixel on all cores of the processor, following light as far as the frame does.");
   commands.push_back({app, [options] { return bench(*options); }});

@@ -203,6 +203,9 @@ Option* App::add_flag_callback(const std::string& names, std::function<void()> a
 void App::footer(const std::string& text) {
   app_->footer(text);
 }
+void App::footer(std::function<std::string()> text) {
+  app_->footer(std::move(text));
+}
 void App::group(const std::string& name) {
   app_->group(name);
 }

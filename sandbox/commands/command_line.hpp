@@ -70,7 +70,8 @@ class App {
   Option* add_flag(const std::string& names, bool& target, const std::string& description);
   Option* add_flag_callback(const std::string& names, std::function<void()> action, const std::string& description);
   void footer(const std::string& text);
-  void group(const std::string& name);  ///< empty: hidden from `--help`
+  void footer(std::function<std::string()> text);  ///< made when `--help` is asked for
+  void group(const std::string& name);             ///< empty: hidden from `--help`
   void require_subcommand(int count);
   bool parsed() const;
   std::size_t count(const std::string& option) const;  ///< occurrences on the command line

@@ -20,12 +20,18 @@ void add_list(cli::App& root, std::vector<Command>&);       ///< list, describe,
 void add_render(cli::App& root, std::vector<Command>&);     ///< render
 void add_reference(cli::App& root, std::vector<Command>&);  ///< reference
 void add_compare(cli::App& root, std::vector<Command>&);    ///< compare
-void add_sweep(cli::App& root, std::vector<Command>&);      ///< sweep run, sweep status, the hidden worker
+void add_sweep(cli::App& root, std::vector<Command>&);      ///< sweep run, references, status, the hidden worker
 void add_results(cli::App& root, std::vector<Command>&);    ///< results, table
 void add_bench(cli::App& root, std::vector<Command>&);      ///< bench
 void add_slab(cli::App& root, std::vector<Command>&);       ///< slab
 void add_plot(cli::App& root, std::vector<Command>&);       ///< plot
 void add_reproduce(cli::App& root, std::vector<Command>&);  ///< reproduce
 void add_view(cli::App& root, std::vector<Command>&);       ///< view, and its hidden renderer
+void add_bundle(cli::App& root, std::vector<Command>&);     ///< bundle
+
+// Of `sweep`, called by add_sweep.
+void add_sweep_merge(cli::App& sweep, std::vector<Command>&);      ///< merge
+void add_sweep_questions(cli::App& sweep, std::vector<Command>&);  ///< compare, tune
+void add_sweep_slurm(cli::App& sweep, std::vector<Command>&);      ///< slurm
 
 }  // namespace pellucid::sandbox

@@ -16,7 +16,7 @@
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
-#include "gl/device_node.hpp"
+#include "gl/devices/device_node.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"

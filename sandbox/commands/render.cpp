@@ -19,10 +19,10 @@
 #include "algorithms/scene/loading_facts.hpp"
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
-#include "sandbox/commands/file_provenance.hpp"
 #include "sandbox/commands/frame_options.hpp"
 #include "sandbox/commands/frame_range.hpp"
 #include "sandbox/commands/scene_facts.hpp"
+#include "sandbox/file_provenance.hpp"
 #include "sandbox/reproduce/native_maps.hpp"
 #include "sandbox/viewer/out/tev_client.hpp"
 
@@ -176,10 +176,8 @@ void add_render(cli::App& root, std::vector<Command>& commands) {
       ->allow_extra_args(false);
   render_app->add_option("--tev", options->tev, "HOST:PORT of a tev or HDRView window that shows the picture too");
   render_app->footer(
-      "Example: pellucid render fog_forest -t volume_slices -s slices=64 -o fog.png
-      "
-      "         pellucid render glass_room -t front_refraction --frames 0:120 --fps 30 -o room.%04d.exr
-      "
+      "Example: pellucid render fog_forest -t volume_slices -s slices=64 -o fog.png\n"
+      "         pellucid render glass_room -t front_refraction --frames 0:120 --fps 30 -o room.%04d.exr\n"
       "An EXR carries what made it: pellucid reproduce fog.exr -o DIR renders it again.");
   commands.push_back({render_app, [options] { return render(*options); }});
 }

@@ -125,7 +125,7 @@ void add_view(cli::App& root, std::vector<Command>& commands) {
   app->add_option("--log", viewer.log, "Write what the window shows, as JSON lines, for tests and reports of faults");
   app->footer(
       "Examples:\n"
-      "  pellucid view fog_forest -t sampling_hulls\n"
+      "  pellucid view fog_forest -t volume_slices\n"
       "  pellucid view picture.exr          the exact state that made the picture\n"
       "Press ? in the window for its keys.");
   commands.push_back({app, [options, app] { return view(*options, *app); }});

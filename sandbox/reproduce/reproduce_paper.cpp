@@ -74,7 +74,7 @@ void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder
                        .summary = {},
                        .rows = {}};
     sweeps::RunOptions run;
-    run.device = options.device;
+    if (options.device) run.devices = {*options.device};
     run.references = folder / "references";  // one paper's sweeps look at the same scenes
     sweep.summary = sweeps::run_sweep(spec, sweep.store, run);
     if (sweep.summary.interrupted) throw RuntimeError("interrupted; the same command goes on where this one stopped");
@@ -129,13 +129,11 @@ const SweepOutcome* sweep_of(const PaperOutcome& outcome, const std::string& spe
 }
 
 void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
-  const std::string prefix = std::string(outcome.paper->name) + ".";
   make_folder(folder / "tables");
-  for (const sweeps::TableInfo& info : sweeps::tables()) {
-    if (!info.name.starts_with(prefix)) continue;
-    const SweepOutcome* sweep = sweep_of(outcome, info.spec);
-    const sweeps::Table table = sweeps::make_table(info.name, sweep == nullptr ? std::vector<json>{} : sweep->rows);
-    const std::string name = info.name.substr(prefix.size());
+  for (const std::string& name : sweeps::entry_names(*outcome.paper, "tables")) {
+    const sweeps::PaperEntry entry{outcome.paper, name};
+    const SweepOutcome* sweep = sweep_of(outcome, sweeps::find_table(entry).spec);
+    const sweeps::Table table = sweeps::make_table(entry, sweep == nullptr ? std::vector<json>{} : sweep->rows);
     using enum sweeps::TableFormat;
     for (const auto& [format, extension] : {std::pair{markdown, ".md"}, std::pair{csv, ".csv"},
                                             std::pair{latex, ".tex"}, std::pair{sweeps::TableFormat::json, ".json"}})
@@ -250,6 +248,8 @@ int reproduce_papers(const PaperOptions& options) {
   const std::vector<sweeps::PaperPointer> chosen = wanted(options.what);
   for (const sweeps::PaperPointer& paper : chosen) {
     // A mistake in what comes last shows before hours of measuring.
+    for (const std::string& name : sweeps::entry_names(*paper, "tables"))
+      sweeps::find_table({paper, name});
     plots::read_figures(paper);
     plots::read_pictures(*paper);
   }

@@ -14,9 +14,11 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "algorithms/scene/images/finite.hpp"
 #include "algorithms/scene/images/picture_file.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
+#include "gl/display/display.hpp"
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
 #include "sweeps/measure/class_errors.hpp"
@@ -49,6 +51,28 @@ std::size_t peak_rss_bytes() {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+void keep_picture(const std::filesystem::path& path, Image color, const Point& point) {
+  std::error_code error;
+  std::filesystem::create_directories(path.parent_path(), error);
+  if (error) {
+    throw RuntimeError(fmt::format("folder '{}' cannot be made: {}", path.parent_path().string(), error.message()));
+  }
+  const Attributes attributes{{"pellucid.point", point.id}, {"pellucid.repeat", repeat_command(point)}};
+  if (path.extension() == ".exr") {
+    ImageFile file;
+    file.image = std::move(color);
+    file.attributes = attributes;
+    write_exr(path, file);
+    return;
+  }
+  for (int y = 0; color.channels == 4 && y < color.height; ++y) {
+    for (int x = 0; x < color.width; ++x)
+      color.at(x, y)[3] = 1;  // a picture to look at, not to composite
+  }
+  gl::DisplayTransform().apply(color.pixels, color.channels);
+  write_png(path, color, attributes);
 }
 
 }  // namespace
@@ -131,15 +155,19 @@ void Measurer::time_passes(Measurement& result) {
   result.row["pass_ms"] = std::move(passes);
 }
 
-void Measurer::compare(const Point& point, const std::filesystem::path& references, Measurement& result) {
-  const Image color = session_->read_color();
-  require_finite(color, "the frame");
+std::shared_ptr<const CachedReference> Measurer::reference(const Point& point,
+                                                           const std::filesystem::path& references) {
+  if (!references_ || references_->folder() != references) references_ = std::make_unique<ReferenceCache>(references);
+  return references_->get(*session_, point, [&](double share) { progress_("reference", share); });
+}
+
+void Measurer::compare(const Point& point, const Image& color, const std::filesystem::path& references,
+                       Measurement& result) {
   if (session_->parameters().value("frame.format", "") == "half")
     result.row["saturated_pixels"] = saturated_pixels(color);
   session_->technique().native_errors(result.row);
   if (point.metrics.empty()) return;
-  if (!references_ || references_->folder() != references) references_ = std::make_unique<ReferenceCache>(references);
-  const auto reference = references_->get(*session_, point, [&](double share) { progress_("reference", share); });
+  const auto reference = this->reference(point, references);
   progress_("metrics", 0);
   const ComparisonResult compared = reference->comparison.compare(color);
   put_values(result.row, compared);
@@ -170,18 +198,22 @@ void Measurer::compare(const Point& point, const std::filesystem::path& referenc
   }
 }
 
-Measurement Measurer::measure(const Point& point, const std::filesystem::path& references) {
+Measurement Measurer::measure(const Point& point, const std::filesystem::path& references,
+                              const std::filesystem::path& picture) {
   try {
     Measurement result;
     progress_("prepare", 0);
+    quiet_.wait_to_work();
     reset_peak_rss();
     open_session(point);
     gl::PassTimer untimed;
     session_->render(untimed);
     if (point.timing.enabled) {
       progress_("timing", 0);
+      quiet_.wait_to_time();
       time_frames(point, result);
       time_passes(result);
+      quiet_.wait_to_work();
     } else {
       result.row["timing"] = "off";
     }
@@ -189,14 +221,19 @@ Measurement Measurer::measure(const Point& point, const std::filesystem::path& r
     result.row["gpu_bytes"] = gl::allocated_bytes();
     result.row["peak_rss_bytes"] = peak_rss_bytes();
     result.row["scene_hash"] = session_->scene().content_hash();
-    compare(point, references, result);
+    const Image color = session_->read_color();
+    require_finite(color, "the frame");
+    if (!picture.empty()) keep_picture(picture, color, point);
+    compare(point, color, references, result);
     const nlohmann::json parameters = session_->parameters();
     for (const auto& [name, value] : parameters.items()) {
       assert(!result.row.contains(name) && "a parameter has the name of a result");
       result.row[name] = value;
     }
+    quiet_.release();
     return result;
   } catch (...) {
+    quiet_.release();
     session_.reset();
     throw;
   }
@@ -205,9 +242,25 @@ Measurement Measurer::measure(const Point& point, const std::filesystem::path& r
 Measurement Measurer::time(const Point& point) {
   try {
     Measurement result;
+    quiet_.wait_to_work();
     open_session(point);
+    quiet_.wait_to_time();
     time_frames(point, result);
+    quiet_.release();
     return result;
+  } catch (...) {
+    quiet_.release();
+    session_.reset();
+    throw;
+  }
+}
+
+void Measurer::trace(const Point& point, const std::filesystem::path& references) {
+  try {
+    open_session(point);
+    gl::PassTimer untimed;
+    session_->render(untimed);  // what is drawn of a reference is drawn as for a frame
+    reference(point, references);
   } catch (...) {
     session_.reset();
     throw;

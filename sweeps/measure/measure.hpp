@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/render_session.hpp"
+#include "sweeps/measure/quiet_lock.hpp"
 #include "sweeps/measure/reference_cache.hpp"
 #include "sweeps/spec/plan.hpp"
 
@@ -26,21 +27,28 @@ struct Measurement {
 class Measurer {
  public:
   using Progress = std::function<void(const char* phase, double share)>;
-  explicit Measurer(Progress progress) : progress_(std::move(progress)) {}
+  /// `quiet`: the file that several workers of a machine share (quiet_lock.hpp).
+  explicit Measurer(Progress progress, const std::filesystem::path& quiet = {})
+      : progress_(std::move(progress)), quiet_(quiet) {}
 
   /// Draws, times and compares. Throws InputError or RuntimeError with the reason when the point cannot be measured, a
   /// pixel that is not finite among them; the next point then starts from a fresh session.
-  Measurement measure(const Point&, const std::filesystem::path& references);
+  /// `picture`: where the frame goes, as Point::keep says; empty: nowhere.
+  Measurement measure(const Point&, const std::filesystem::path& references, const std::filesystem::path& picture = {});
   /// The frame time alone.
   Measurement time(const Point&);
+  /// The reference alone, into the folder.
+  void trace(const Point&, const std::filesystem::path& references);
 
  private:
   void open_session(const Point&);
   void time_frames(const Point&, Measurement& result);
   void time_passes(Measurement& result);
-  void compare(const Point&, const std::filesystem::path& references, Measurement& result);
+  std::shared_ptr<const CachedReference> reference(const Point&, const std::filesystem::path& references);
+  void compare(const Point&, const Image& color, const std::filesystem::path& references, Measurement& result);
 
   Progress progress_;
+  QuietLock quiet_;
   std::string session_key_;
   std::optional<RenderSession> session_;
   std::map<std::string, Value> assigned_;

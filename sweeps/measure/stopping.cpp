@@ -8,42 +8,6 @@
 namespace pellucid::sweeps {
 namespace {
 
-/// P(Binomial(n, p) ≥ m), summed outwards from the largest term's logarithm so that nothing underflows.
-double binomial_tail(std::size_t n, double p, std::size_t m) {
-  if (m == 0) return 1;
-  if (p <= 0) return 0;
-  if (p >= 1) return m <= n ? 1 : 0;
-  const double size = static_cast<double>(n);
-  const double log_p = std::log(p);
-  const double log_q = std::log1p(-p);
-  double sum = 0;
-  for (std::size_t k = m; k <= n; ++k) {
-    const double x = static_cast<double>(k);
-    const double log_term =
-        std::lgamma(size + 1) - std::lgamma(x + 1) - std::lgamma(size - x + 1) + x * log_p + (size - x) * log_q;
-    const double term = std::exp(log_term);
-    sum += term;
-    if (x > size * p && term < 1e-17) break;  // past the mode the terms only fall
-  }
-  return std::min(sum, 1.0);
-}
-
-/// Smallest k (1-based) such that the `rank`-th smallest of n draws lies at or below the k-th order statistic with
-/// probability at least q.
-std::size_t bootstrap_rank(std::size_t n, std::size_t rank, double q) {
-  std::size_t low = 1;
-  std::size_t high = n;
-  while (low < high) {
-    const std::size_t k = low + (high - low) / 2;
-    if (binomial_tail(n, static_cast<double>(k) / static_cast<double>(n), rank) >= q) {
-      high = k;
-    } else {
-      low = k + 1;
-    }
-  }
-  return low;
-}
-
 double median_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return quantile(values, 0.5);
@@ -59,13 +23,63 @@ double quantile(std::span<const double> sorted, double q) {
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-Interval bootstrap_median_interval(std::span<const double> sorted, double confidence) {
-  assert(!sorted.empty() && confidence > 0 && confidence < 1);
-  const std::size_t n = sorted.size();
+/// P(Binomial(n, p) ≥ m), summed outwards from the largest term's logarithm so that nothing underflows.
+double MedianIntervalRanks::binomial_tail(std::size_t n, double p, std::size_t m) {
+  if (m == 0) return 1;
+  if (p <= 0) return 0;
+  if (p >= 1) return m <= n ? 1 : 0;
+  const double size = static_cast<double>(n);
+  const double log_p = std::log(p);
+  const double log_q = std::log1p(-p);
+  double sum = 0;
+  for (std::size_t k = m; k <= n; ++k) {
+    const double x = static_cast<double>(k);
+    const double log_term =
+        log_factorial_[n] - log_factorial_[k] - log_factorial_[n - k] + x * log_p + (size - x) * log_q;
+    const double term = std::exp(log_term);
+    sum += term;
+    if (x > size * p && term < 1e-17) break;  // past the mode the terms only fall
+  }
+  return std::min(sum, 1.0);
+}
+
+/// Smallest k (1-based) such that the `rank`-th smallest of n draws lies at or below the k-th order statistic with
+/// probability at least q.
+std::size_t MedianIntervalRanks::bootstrap_rank(std::size_t n, std::size_t rank, double q) {
+  const auto reaches = [&](std::size_t k) {
+    return binomial_tail(n, static_cast<double>(k) / static_cast<double>(n), rank) >= q;
+  };
+  // The answer lies within four standard deviations of the rank, about 4 sqrt(n) / 2; where it should not, look on.
+  const auto reach = static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(n))) + 2;
+  std::size_t low = rank > reach ? rank - reach : 1;
+  std::size_t high = std::min(n, rank + reach);
+  if (low > 1 && reaches(low - 1)) low = 1;
+  if (!reaches(high)) high = n;
+  while (low < high) {
+    const std::size_t k = low + (high - low) / 2;
+    if (reaches(k)) {
+      high = k;
+    } else {
+      low = k + 1;
+    }
+  }
+  return low;
+}
+
+MedianIntervalRanks::Ranks MedianIntervalRanks::at(std::size_t n, double confidence) {
+  assert(n > 0 && confidence > 0 && confidence < 1);
+  for (std::size_t k = log_factorial_.size(); k <= n; ++k)
+    log_factorial_.push_back(std::lgamma(static_cast<double>(k) + 1));
   const double tail = (1 - confidence) / 2;
   const std::size_t lower_middle = (n + 1) / 2;
   const std::size_t upper_middle = n / 2 + 1;
-  return {sorted[bootstrap_rank(n, lower_middle, tail) - 1], sorted[bootstrap_rank(n, upper_middle, 1 - tail) - 1]};
+  return {bootstrap_rank(n, lower_middle, tail), bootstrap_rank(n, upper_middle, 1 - tail)};
+}
+
+Interval bootstrap_median_interval(std::span<const double> sorted, double confidence) {
+  assert(!sorted.empty());
+  const MedianIntervalRanks::Ranks ranks = MedianIntervalRanks().at(sorted.size(), confidence);
+  return {sorted[ranks.low - 1], sorted[ranks.high - 1]};
 }
 
 TimingSummary summarise(std::span<const double> samples_ms) {
@@ -92,10 +106,15 @@ bool WarmUp::capped() const {
   return frames_ms_.size() >= max_frames_ || total_ms_ >= 1000 * max_seconds_;
 }
 
-bool StoppingRule::narrow_enough() const {
-  const TimingSummary summary = summarise(samples_ms_);
-  const double half_width = (summary.ci95_ms.high - summary.ci95_ms.low) / 2;
-  return half_width <= limits_.relative_ci * summary.median_ms;
+bool StoppingRule::narrow_enough() {
+  if (samples_ms_.size() < 2) return false;
+  const auto known = static_cast<std::ptrdiff_t>(sorted_ms_.size());
+  sorted_ms_.insert(sorted_ms_.end(), samples_ms_.begin() + known, samples_ms_.end());
+  std::sort(sorted_ms_.begin() + known, sorted_ms_.end());
+  std::inplace_merge(sorted_ms_.begin(), sorted_ms_.begin() + known, sorted_ms_.end());
+  const MedianIntervalRanks::Ranks ranks = ranks_.at(sorted_ms_.size());
+  const double half_width = (sorted_ms_[ranks.high - 1] - sorted_ms_[ranks.low - 1]) / 2;
+  return half_width <= limits_.relative_ci * quantile(sorted_ms_, 0.5);
 }
 
 Verdict StoppingRule::add(double frame_ms, double elapsed_s) {

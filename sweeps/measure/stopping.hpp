@@ -24,6 +24,21 @@ struct Interval {
 /// empty.
 Interval bootstrap_median_interval(std::span<const double> sorted, double confidence = 0.95);
 
+/// The ranks (1-based) of that interval's ends among n sorted samples. Keeps what one n has in common with the next, so
+/// that asking for a growing n stays cheap; the answers do not depend on what was asked before.
+class MedianIntervalRanks {
+ public:
+  struct Ranks {
+    std::size_t low = 1, high = 1;
+  };
+  Ranks at(std::size_t n, double confidence = 0.95);
+
+ private:
+  double binomial_tail(std::size_t n, double p, std::size_t m);
+  std::size_t bootstrap_rank(std::size_t n, std::size_t rank, double q);
+  std::vector<double> log_factorial_;
+};
+
 struct TimingSummary {
   double median_ms = 0;
   Interval ci95_ms;
@@ -55,7 +70,8 @@ class WarmUp {
 enum class Verdict { more, converged, unconverged };
 
 /// Sampling ends when there are min_samples and the interval of the median is narrow enough (converged), or at
-/// max_samples or max_seconds (unconverged). A sample that is not finite or is negative is a bug of the caller.
+/// max_samples or max_seconds (unconverged). One sample has no interval and never converges. A sample that is not
+/// finite or is negative is a bug of the caller.
 class StoppingRule {
  public:
   explicit StoppingRule(const TimingLimits& limits) : limits_(limits) {}
@@ -65,9 +81,11 @@ class StoppingRule {
   const std::vector<double>& samples_ms() const { return samples_ms_; }
 
  private:
-  bool narrow_enough() const;
+  bool narrow_enough();
   TimingLimits limits_;
   std::vector<double> samples_ms_;
+  std::vector<double> sorted_ms_;  // the first ones, as of the last check; a check merges in what came since
+  MedianIntervalRanks ranks_;
   std::size_t next_check_ = 0;
   Verdict verdict_ = Verdict::more;
 };

@@ -12,7 +12,7 @@
 #include "algorithms/parameters.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/error.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/spec/spec.hpp"
 
 namespace pellucid::sweeps {
@@ -219,7 +219,7 @@ PaperEntry find_entry(std::string_view wanted, std::string_view section, std::st
     return find_in(paper, wanted.substr(colon + 6), section, noun);
   }
   std::vector<std::string> names;
-  std::vector<PaperEntry> short_named;  // "fig8" for "sampling_hulls.fig8"
+  std::vector<PaperEntry> short_named;  // "fig8" for "PAPER.fig8"
   for (PaperEntry& entry : built_in_entries(section)) {
     names.push_back(entry.full_name());
     if (names.back() == wanted) return entry;

@@ -37,7 +37,7 @@ struct Paper {
   /// Of this paper or declared for all; throws InputError with the nearest name.
   const Quantity& quantity(std::string_view name) const;
   const Quantity* find_quantity(std::string_view name) const;
-  /// How the command line calls an entry of it: "sampling_hulls.table1", "my.toml:table1".
+  /// How the command line calls an entry of it: "PAPER.table1", "my.toml:table1".
   std::string address(std::string_view entry) const;
 };
 using PaperPointer = std::shared_ptr<const Paper>;

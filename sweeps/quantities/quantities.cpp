@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <toml++/toml.h>
 
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/spec/constraint.hpp"
 #include "sweeps/store/rows.hpp"
 
@@ -125,8 +125,9 @@ std::vector<Quantity> read_quantities(TableReader& root, bool own) {
 const std::vector<Quantity>& quantities() {
   static const std::vector<Quantity> all = [] {
     std::vector<Quantity> found;
-    std::vector<std::string> files = list_resources("algorithms/", "/quantities.toml");
-    files.insert(files.begin(), std::string(kOwnFile));
+    std::vector<std::string> files{std::string(kOwnFile)};
+    const std::vector<std::string> of_techniques = list_resources("algorithms/", "/quantities.toml");
+    files.insert(files.end(), of_techniques.begin(), of_techniques.end());
     for (const std::string& name : files) {
       const TomlFile file{name};
       const auto document = parse_toml(find_resource(name).value_or(""), file);

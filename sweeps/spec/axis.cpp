@@ -1,6 +1,9 @@
 #include "sweeps/spec/axis.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -8,6 +11,15 @@
 
 namespace pellucid::sweeps {
 namespace {
+
+/// The decimal that a person would write for `x`: of twelve digits at most, and no further from it than the
+/// arithmetic's rounding, which grows with `scale`. A value without such a decimal (1/3) stays as it is.
+double as_written(double x, double scale) {
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() * scale;
+  if (std::abs(x) <= rounding) return 0;
+  const double written = std::stod(fmt::format("{:.11e}", x));
+  return std::abs(written - x) <= rounding ? written : x;
+}
 
 std::vector<double> doublings(const AxisRange& range) {
   const double octaves = std::log2(range.to / range.from);
@@ -27,12 +39,14 @@ std::vector<double> evenly(const AxisRange& range) {
   std::vector<double> values;
   for (std::int64_t i = 0; i <= last; ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(last);
-    if (i == last) {
-      values.push_back(range.to);  // exactly
+    if (i == 0 || i == last) {
+      values.push_back(i == 0 ? range.from : range.to);  // exactly
     } else if (range.log2) {
-      values.push_back(range.from * std::pow(range.to / range.from, t));
+      const double x = range.from * std::pow(range.to / range.from, t);
+      values.push_back(as_written(x, x));
     } else {
-      values.push_back(range.from + (range.to - range.from) * t);
+      values.push_back(
+          as_written(range.from + (range.to - range.from) * t, std::max(std::abs(range.from), std::abs(range.to))));
     }
   }
   return values;
@@ -40,7 +54,7 @@ std::vector<double> evenly(const AxisRange& range) {
 
 }  // namespace
 
-std::vector<Value> expand_range(const ParameterInfo& info, const AxisRange& range) {
+void check_range(const ParameterInfo& info, const AxisRange& range) {
   if (info.type != ValueType::integer && info.type != ValueType::real) {
     throw InputError(fmt::format("a range needs a number, and {} is {}; list its values", info.name,
                                  info.type == ValueType::choice ? "a choice" : "a boolean"));
@@ -51,6 +65,10 @@ std::vector<Value> expand_range(const ParameterInfo& info, const AxisRange& rang
   if (range.log2 && !(range.from > 0)) {
     throw InputError(fmt::format("a log2 range needs from > 0, and it is {}", range.from));
   }
+}
+
+std::vector<Value> expand_range(const ParameterInfo& info, const AxisRange& range) {
+  check_range(info, range);
   if (!range.steps && !range.log2) throw InputError("a range needs `steps` or `log2 = true`");
   if (range.steps && (*range.steps < 2 || *range.steps > static_cast<std::int64_t>(kMaxPoints))) {
     throw InputError(fmt::format("steps = {} is out of range [2, {}]", *range.steps, kMaxPoints));

@@ -15,8 +15,12 @@ struct AxisRange {
   bool log2 = false;                  ///< without steps: doubling from `from` to `to`, which must be hit
 };
 
+/// Throws InputError, without a position, unless the parameter is a number and the range ascends between finite ends.
+void check_range(const ParameterInfo&, const AxisRange&);
+
 /// The values of a range for a parameter of integer or real type, in its own type. An integer parameter takes only
-/// ranges that fall on integers. Throws InputError without a position. Does not check the parameter's own range.
+/// ranges that fall on integers; reals are the decimals that a person would write (0.9, not 0.8999999999999999). Throws
+/// InputError without a position. Does not check the parameter's own range.
 std::vector<Value> expand_range(const ParameterInfo&, const AxisRange&);
 
 }  // namespace pellucid::sweeps

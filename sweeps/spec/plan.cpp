@@ -1,9 +1,12 @@
 #include "sweeps/spec/plan.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <random>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <variant>
 
@@ -30,13 +33,11 @@ constexpr std::size_t kChunk = 4;
   throw InputError(fmt::format("{}:{}:{}: {}", spec.source, at.line, at.column, message));
 }
 
-std::string hash_of(const Point& point) {
-  nlohmann::json parameters = nlohmann::json::object();
-  for (const auto& [name, value] : point.parameters)
-    parameters[name] = value_to_json(value);
+/// What a point's id is the hash of, but for its parameters, which stand between the two parts.
+std::pair<std::string, std::string> identity(const Point& point) {
   nlohmann::json all = {{"version", kPointVersion},
                         {"technique", point.technique},
-                        {"parameters", parameters},
+                        {"parameters", nlohmann::json::object()},
                         {"scene", point.scene},
                         {"scene_hash", point.scene_hash},
                         {"code_hash", point.code_hash},
@@ -47,7 +48,23 @@ std::string hash_of(const Point& point) {
   all["timing"] =
       t.enabled ? nlohmann::json{t.min_samples, t.max_samples, t.max_seconds, t.relative_ci} : nlohmann::json();
   if (!point.metrics.empty()) all["reference"] = to_json(point.reference);
-  return sha256_hex(all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).substr(0, 16);
+  const std::string text = all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  constexpr std::string_view kParameters = "\"parameters\":{";
+  const std::size_t at = text.find(kParameters) + kParameters.size();
+  return {text.substr(0, at), text.substr(at)};
+}
+
+std::string identity_text(const std::string& name, const Value& value) {
+  return nlohmann::json(name).dump() + ":" +
+         value_to_json(value).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// What a constraint computes with; nothing for a choice, which it cannot name.
+std::optional<double> number_of(const Value& value) {
+  if (const auto* b = std::get_if<bool>(&value)) return *b ? 1 : 0;
+  if (const auto* i = std::get_if<std::int64_t>(&value)) return static_cast<double>(*i);
+  if (const auto* d = std::get_if<double>(&value)) return *d;
+  return std::nullopt;
 }
 
 /// The parameters of a technique in a scene under their full names.
@@ -69,9 +86,23 @@ std::vector<ParameterInfo> full_table(const Catalogue& catalogue, const std::str
 
 /// What the keys of a point say of the work it can share with others.
 struct Sharing {
-  std::string scene;       ///< the loaded scene
-  std::string precompute;  ///< … and what prepare() made
+  std::string precompute;  ///< what prepare() makes
   std::string program;     ///< … and the programs
+};
+
+/// One value of an axis, in every form that expanding needs.
+struct AxisValue {
+  Value value;
+  std::string identity;
+  std::optional<double> number;
+  std::string sharing;
+};
+
+/// An axis in one place of a block (technique, scene, view and size).
+struct PlacedAxis {
+  std::size_t parameter = 0;  ///< in order of names
+  Change when = Change::uniform;
+  std::vector<AxisValue> values;
 };
 
 /// Expands the blocks of one spec into a plan.
@@ -87,14 +118,13 @@ class Expander {
   }
 
  private:
-  /// Each combination of axis values as indices into the axes.
+  /// How many combinations of axis values there are.
   std::size_t combinations(const RunBlock& block) const {
-    if (block.axes.empty()) return 1;
-    if (block.combine == Combine::zip) return block.axes.front().values.size();
     std::size_t n = 1;
-    for (const Axis& axis : block.axes) {
-      if (axis.values.size() > kMaxPoints / n) too_many(block);
-      n *= axis.values.size();
+    for (const Walk& walk : block.walks) {
+      const std::size_t length = block.axes[walk.front()].values.size();
+      if (length > kMaxPoints / n) too_many(block);
+      n *= length;
     }
     return n;
   }
@@ -114,6 +144,8 @@ class Expander {
       too_many(block);
     }
     const std::size_t before = plan_.members.size();
+    skipped_.assign(block.constraints.size() + 1, 0);
+    in_block_.clear();
     for (const std::string& technique : block.techniques) {
       for (const std::string& scene : block.scenes) {
         table_ = full_table(catalogue_, technique, scene);
@@ -122,11 +154,20 @@ class Expander {
         const std::vector<std::string> chosen = block.views.empty() ? std::vector{facts.views.front()} : block.views;
         for (const std::string& view : chosen) {
           for (const Size& size : block.sizes) {
+            place(block, technique, scene, view, size);
             for (std::size_t i = 0; i < each; ++i)
-              add_point(block, technique, scene, view, size, i);
+              add_point(block, i);
           }
         }
       }
+    }
+    for (std::size_t i = 0; i < skipped_.size(); ++i) {
+      if (skipped_[i] == 0) continue;
+      plan_.skipped.push_back({block.name,
+                               i < block.constraints.size()
+                                   ? fmt::format("the constraint '{}'", block.constraints[i].text)
+                                   : "the same point again",
+                               skipped_[i]});
     }
     if (plan_.members.size() == before) {
       fail(spec_, block.constraints.empty() ? block.at : block.constraints.front().at,
@@ -155,91 +196,147 @@ class Expander {
     }
   }
 
-  bool allowed(const RunBlock& block, const Point& point) {
-    if (constraints_.empty()) return true;
-    std::map<std::string, double> numbers{{"width", point.size.width}, {"height", point.size.height}};
-    for (const auto& [name, value] : point.parameters) {
-      if (const auto* b = std::get_if<bool>(&value)) numbers[name] = *b ? 1 : 0;
-      if (const auto* i = std::get_if<std::int64_t>(&value)) numbers[name] = static_cast<double>(*i);
-      if (const auto* d = std::get_if<double>(&value)) numbers[name] = *d;
-    }
-    for (std::size_t i = 0; i < constraints_.size(); ++i) {
-      try {
-        if (!constraints_[i].holds(numbers)) return false;
-      } catch (const InputError& e) {
-        fail(spec_, block.constraints[i].at, e.what());
-      }
-    }
-    return true;
-  }
-
-  void add_point(const RunBlock& block, const std::string& technique, const std::string& scene, const std::string& view,
-                 const Size& size, std::size_t combination) {
-    Point point;
-    point.technique = technique;
-    point.scene = scene;
-    point.view = view;
-    point.size = size;
-    point.metrics = block.metrics;
-    point.timing = block.timing;
+  /// Works out what all points of one place share, so that a point costs little more than its hash.
+  void place(const RunBlock& block, const std::string& technique, const std::string& scene, const std::string& view,
+             const Size& size) {
+    shared_ = Point{};
+    shared_.technique = technique;
+    shared_.scene = scene;
+    shared_.view = view;
+    shared_.size = size;
+    shared_.metrics = block.metrics;
+    shared_.timing = block.timing;
+    shared_.keep = block.keep;
     const SceneFacts& facts = catalogue_.scene(scene);
-    point.reference = block.reference;
+    shared_.reference = block.reference;
     if (!block.metrics.empty()) {
       try {
-        point.reference = settled(block.reference, scene, facts.interfaces, facts.volume);
+        shared_.reference = settled(block.reference, scene, facts.interfaces, facts.volume);
       } catch (const InputError& e) {
         fail(spec_, block.at, e.what());
       }
     }
-    point.scene_hash = facts.content_hash;
-    point.code_hash = code_hash(technique);
-    for (const ParameterInfo& i : table_)
-      point.parameters[i.name] = i.default_value;
-
-    // The last axis runs fastest, as a reader of nested loops expects.
-    std::size_t rest = combination;
-    for (std::size_t a = block.axes.size(); a-- > 0;) {
-      const Axis& axis = block.axes[a];
-      std::size_t index = combination;
-      if (block.combine == Combine::grid) {
-        index = rest % axis.values.size();
-        rest /= axis.values.size();
-      }
-      point.parameters[axis.name] = checked(info(axis.name), axis.values[index], technique);
+    shared_.scene_hash = facts.content_hash;
+    shared_.code_hash = code_hash(technique);
+    for (const ParameterInfo& i : table_) {
+      shared_.parameters[i.name] = i.default_value;
+      plan_.parameters.try_emplace(i.name, i);
     }
     for (const Axis& axis : block.axes)
-      point.assigned.push_back(axis.name);
+      shared_.assigned.push_back(axis.name);
     for (const FixedValue& fixed : block.fixed) {
-      point.parameters[fixed.name] = checked(info(fixed.name), fixed.value, technique);
-      point.assigned.push_back(fixed.name);
+      shared_.parameters[fixed.name] = checked(info(fixed.name), fixed.value, technique);
+      shared_.assigned.push_back(fixed.name);
     }
-    if (!allowed(block, point)) return;
 
-    point.id = hash_of(point);
-    const auto [at, is_new] = index_.try_emplace(point.id, plan_.points.size());
+    std::tie(identity_before_, identity_after_) = identity(shared_);
+    identity_.clear();
+    numbers_ = {{"width", size.width}, {"height", size.height}};
+    sharing_shared_ = {fmt::format("{} {} {}x{}", technique, view, size.width, size.height), {}};
+    std::vector<std::string> names;
+    for (const auto& [name, value] : shared_.parameters) {
+      names.push_back(name);
+      identity_.push_back(identity_text(name, value));
+      if (const auto number = number_of(value)) numbers_[name] = *number;
+      const bool varies = std::any_of(block.axes.begin(), block.axes.end(),
+                                      [&, &n = name](const Axis& axis) { return axis.name == n; });
+      if (!varies) share(sharing_shared_, cost(info(name)), sharing_text(name, value));
+    }
+    axes_.clear();
+    for (const Axis& axis : block.axes) {
+      const ParameterInfo& about = info(axis.name);
+      PlacedAxis placed;
+      placed.parameter =
+          static_cast<std::size_t>(std::lower_bound(names.begin(), names.end(), axis.name) - names.begin());
+      placed.when = cost(about);
+      for (const Value& given : axis.values) {
+        Value value = checked(about, given, technique);
+        placed.values.push_back(
+            {value, identity_text(axis.name, value), number_of(value), sharing_text(axis.name, value)});
+      }
+      axes_.push_back(std::move(placed));
+    }
+    chosen_.assign(block.axes.size(), 0);
+  }
+
+  /// A scene's parameter may cost whatever is precomputed for the scene.
+  static Change cost(const ParameterInfo& about) {
+    return route(about.name).owner == ParameterOwner::scene ? Change::precompute : about.when;
+  }
+  static std::string sharing_text(const std::string& name, const Value& value) {
+    return fmt::format(" {}={}", name, to_text(value));
+  }
+  static void share(Sharing& sharing, Change when, const std::string& text) {
+    if (when == Change::precompute) sharing.precompute += text;
+    if (when == Change::program) sharing.program += text;
+  }
+
+  /// The last walk runs fastest, as a reader of nested loops expects.
+  void choose(const RunBlock& block, std::size_t combination) {
+    for (std::size_t w = block.walks.size(); w-- > 0;) {
+      const std::size_t length = block.axes[block.walks[w].front()].values.size();
+      for (const std::size_t axis : block.walks[w])
+        chosen_[axis] = combination % length;
+      combination /= length;
+    }
+  }
+
+  bool allowed(const RunBlock& block) {
+    if (constraints_.empty()) return true;
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      if (const auto& number = axes_[a].values[chosen_[a]].number) numbers_[block.axes[a].name] = *number;
+    }
+    for (std::size_t i = 0; i < constraints_.size(); ++i) {
+      try {
+        if (constraints_[i].holds(numbers_)) continue;
+      } catch (const InputError& e) {
+        fail(spec_, block.constraints[i].at, e.what());
+      }
+      ++skipped_[i];
+      return false;
+    }
+    return true;
+  }
+
+  std::string id() {
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      identity_[axes_[a].parameter] = axes_[a].values[chosen_[a]].identity;
+    text_ = identity_before_;
+    for (std::size_t i = 0; i < identity_.size(); ++i) {
+      if (i > 0) text_ += ',';
+      text_ += identity_[i];
+    }
+    text_ += identity_after_;
+    return sha256_hex(text_).substr(0, 16);
+  }
+
+  void add_point(const RunBlock& block, std::size_t combination) {
+    choose(block, combination);
+    if (!allowed(block)) return;
+    std::string name = id();
+    const auto [at, is_new] = index_.try_emplace(name, plan_.points.size());
+    if (!in_block_.insert(at->second).second) {
+      ++skipped_.back();
+      return;
+    }
     plan_.members.push_back({block.name, at->second});
     if (!is_new) return;
     if (plan_.points.size() == kMaxPoints) too_many(block);
-    sharing_.push_back(sharing(point));
-    plan_.points.push_back(std::move(point));
+    Sharing sharing = sharing_shared_;
+    Point& point = plan_.points.emplace_back(shared_);
+    point.id = std::move(name);
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      const AxisValue& value = axes_[a].values[chosen_[a]];
+      point.parameters.find(block.axes[a].name)->second = value.value;
+      share(sharing, axes_[a].when, value.sharing);
+    }
+    sharing_.push_back(std::move(sharing));
   }
 
   const std::string& code_hash(const std::string& technique) {
     const auto [at, is_new] = code_hashes_.try_emplace(technique);
     if (is_new) at->second = catalogue_.code_hash(technique);
     return at->second;
-  }
-
-  Sharing sharing(const Point& point) const {
-    Sharing s;
-    s.scene = point.scene;
-    s.precompute = fmt::format("{} {} {}x{}", point.technique, point.view, point.size.width, point.size.height);
-    for (const ParameterInfo& i : table_) {
-      const std::string text = fmt::format(" {}={}", i.name, to_text(point.parameters.at(i.name)));
-      if (i.when == Change::precompute || route(i.name).owner == ParameterOwner::scene) s.precompute += text;
-      if (i.when == Change::program) s.program += text;
-    }
-    return s;
   }
 
   /// Fisher-Yates by hand: std::shuffle may differ between libraries, and the order is part of what a seed promises.
@@ -252,7 +349,7 @@ class Expander {
   void order() {
     std::map<std::string, std::map<std::string, std::vector<std::size_t>>> scenes;
     for (std::size_t i = 0; i < plan_.points.size(); ++i)
-      scenes[sharing_[i].scene][sharing_[i].precompute].push_back(i);
+      scenes[plan_.points[i].scene][sharing_[i].precompute].push_back(i);
     for (auto& [scene, cells] : scenes) {
       std::vector<std::vector<std::size_t>> chunks;
       for (auto& [cell, points] : cells) {
@@ -276,7 +373,20 @@ class Expander {
   Plan plan_;
   std::vector<ParameterInfo> table_;
   std::vector<Expression> constraints_;
+  std::vector<std::size_t> skipped_;  // by constraint; the last: again
+  std::unordered_set<std::size_t> in_block_;
   std::vector<Sharing> sharing_;
+
+  // Of the place under expansion.
+  Point shared_;
+  Sharing sharing_shared_;
+  std::string identity_before_, identity_after_;
+  std::vector<std::string> identity_;  // of each parameter, in order of names
+  std::map<std::string, double> numbers_;
+  std::vector<PlacedAxis> axes_;
+  std::vector<std::size_t> chosen_;  // index of each axis's value
+  std::string text_;
+
   std::unordered_map<std::string, std::size_t> index_;
   std::map<std::string, std::string> code_hashes_;
   std::mt19937_64 random_{0x70656c6c75636964};  // "pellucid"
@@ -286,6 +396,11 @@ class Expander {
 
 Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   return Expander(spec, catalogue).expand();
+}
+
+std::filesystem::path picture_path(const std::filesystem::path& store, const Point& point) {
+  assert(point.keep != Keep::nothing);
+  return std::filesystem::path(store.string() + ".pictures") / (point.id + (point.keep == Keep::png ? ".png" : ".exr"));
 }
 
 std::string repeat_command(const Point& point) {

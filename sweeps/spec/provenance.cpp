@@ -1,11 +1,13 @@
 #include "sweeps/spec/provenance.hpp"
 
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <fstream>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace pellucid::sweeps {
 
@@ -15,6 +17,11 @@ std::string utc_text(double unix_s) {
 
 double unix_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "localhost";
 }
 
 std::vector<std::string> process_argv() {
@@ -37,7 +44,7 @@ std::string shell_word(const std::string& text) {
 std::string shell_line(const std::vector<std::string>& argv) {
   std::string line;
   for (const std::string& word : argv)
-    line += (line.empty() ? "" : " ") + shell_word(word);
+    line.append(line.empty() ? "" : " ").append(shell_word(word));
   return line;
 }
 

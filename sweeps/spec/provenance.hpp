@@ -15,6 +15,9 @@ std::string utc_text(double unix_s);
 /// Wall clock.
 double unix_now_s();
 
+/// This machine's name on its network.
+std::string host_name();
+
 /// The command line of this process.
 std::vector<std::string> process_argv();
 

@@ -14,9 +14,10 @@
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/error.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/spec/preview.hpp"
+#include "sweeps/spec/spec_axes.hpp"
 #include "sweeps/spec/spec_reader.hpp"
 
 namespace pellucid::sweeps {
@@ -93,121 +94,11 @@ void read_metrics(const SpecReader& read, const toml::table& table, std::vector<
   if (!metrics.empty()) metrics = MetricSet(metrics).names();
 }
 
-/// What one block draws from: every pair of technique and scene, whose tables must all know an axis.
-struct Owners {
-  const SpecReader& read;
-  const Catalogue& catalogue;
-  const RunBlock& block;
-
-  /// The tables that must hold `name`, and the name they know it by.
-  struct Owner {
-    std::string label;
-    std::vector<ParameterInfo> infos;
-  };
-  std::vector<Owner> owners_of(const std::string& name) const {
-    std::vector<Owner> owners;
-    if (route(name).owner == ParameterOwner::scene) {
-      for (const std::string& scene : block.scenes)
-        owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
-    } else if (const auto common = std::find_if(
-                   common_settings().begin(), common_settings().end(),
-                   [&](const CommonSettings& group) { return name.starts_with(std::string(group.prefix) + "."); });
-               common != common_settings().end()) {
-      owners.push_back({std::string(common->prefix), {common->table->infos().begin(), common->table->infos().end()}});
-    } else {
-      for (const std::string& technique : block.techniques) {
-        owners.push_back({technique, catalogue.technique_parameters(technique)});
-      }
-    }
-    return owners;
-  }
-
-  /// The parameter in every table; complains at the key.
-  std::vector<std::pair<std::string, ParameterInfo>> find(const SpecReader::Entry& entry) const {
-    const std::size_t dot = entry.name.find('.');
-    const std::string bare = dot == std::string::npos ? entry.name : entry.name.substr(dot + 1);
-    std::vector<std::pair<std::string, ParameterInfo>> found;
-    for (const Owner& owner : owners_of(entry.name)) {
-      const auto info =
-          std::find_if(owner.infos.begin(), owner.infos.end(), [&](const auto& i) { return i.name == bare; });
-      if (info == owner.infos.end()) read.fail(entry.at, unknown_parameter(bare, owner.label, owner.infos).what());
-      found.emplace_back(owner.label, *info);
-    }
-    return found;
-  }
-
-  Value check(const SpecReader::Entry& entry, const toml::node& node, const Value& value) const {
-    Value result = value;
-    for (const auto& [label, info] : find(entry)) {
-      try {
-        result = checked(info, value, label);
-      } catch (const InputError& e) {
-        read.fail(node, e.what());
-      }
-    }
-    return result;
-  }
-};
-
-std::vector<Value> read_axis(const SpecReader& read, const Owners& owners, const SpecReader::Entry& entry) {
-  const auto infos = owners.find(entry);
-  std::vector<Value> values;
-  if (const toml::table* range = entry.node->as_table()) {
-    const AxisRange bounds = read.range(*range, entry.name);
-    try {
-      values = expand_range(infos.front().second, bounds);
-    } catch (const InputError& e) {
-      read.fail(*entry.node, fmt::format("{}: {}", entry.name, e.what()));
-    }
-    for (Value& value : values)
-      value = owners.check(entry, *entry.node, value);
-    return values;
-  }
-  const toml::array* list = entry.node->as_array();
-  if (list == nullptr) {
-    read.fail(*entry.node,
-              fmt::format("axis {} is a list of values or a range {{ from, to, steps | log2 }}; a single value "
-                          "belongs under [run.fixed]",
-                          entry.name));
-  }
-  if (list->empty()) read.fail(*list, fmt::format("axis {} lists no value", entry.name));
-  for (const toml::node& node : *list) {
-    Value value = owners.check(entry, node, read.value(node, entry.name));
-    // Walked together with other axes, a value may well come again.
-    if (owners.block.combine == Combine::grid && std::find(values.begin(), values.end(), value) != values.end()) {
-      read.fail(node, fmt::format("axis {} lists {} twice", entry.name, to_text(value)));
-    }
-    values.push_back(std::move(value));
-  }
-  return values;
-}
-
-void read_parameters(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
-  const Owners owners{read, catalogue, block};
-  if (const toml::table* axes = read.table(table, "axes")) {
-    for (const SpecReader::Entry& entry : read.entries(*axes)) {
-      block.axes.push_back({entry.name, read_axis(read, owners, entry), entry.at});
-    }
-  }
-  if (const toml::table* fixed = read.table(table, "fixed")) {
-    for (const SpecReader::Entry& entry : read.entries(*fixed)) {
-      owners.find(entry);
-      const auto same = [&](const Axis& axis) { return axis.name == entry.name; };
-      if (std::any_of(block.axes.begin(), block.axes.end(), same)) {
-        read.fail(entry.at, fmt::format("{} is an axis of this block already", entry.name));
-      }
-      block.fixed.push_back({entry.name, owners.check(entry, *entry.node, read.value(*entry.node, entry.name))});
-    }
-  }
-  if (block.combine == Combine::zip) {
-    if (block.axes.empty()) read.fail(block.at, "combine = \"zip\" needs [run.axes]");
-    for (const Axis& axis : block.axes) {
-      if (axis.values.size() != block.axes.front().values.size()) {
-        read.fail(axis.at, fmt::format("a zip needs axes of equal length: {} has {} values, {} has {}", axis.name,
-                                       axis.values.size(), block.axes.front().name, block.axes.front().values.size()));
-      }
-    }
-  }
+void read_keep(const SpecReader& read, const toml::table& table, Keep& keep) {
+  std::string text;
+  if (!read.text(table, "keep", text)) return;
+  read.one_of(*table.get("keep"), text, {"nothing", "png", "exr"}, "keep");
+  keep = text == "png" ? Keep::png : text == "exr" ? Keep::exr : Keep::nothing;
 }
 
 // A view's name, or a camera as text. That is checked as far as it goes without the scene's own numbers.
@@ -249,20 +140,16 @@ RunBlock read_block(const SpecReader& read, const toml::table& table, const Cata
   RunBlock block = defaults;
   block.at = read.position(table);
   read.allow(table,
-             {"name", "techniques", "scenes", "views", "sizes", "combine", "constraints", "metrics", "baseline", "axes",
-              "fixed", "timing", "reference"},
+             {"name", "techniques", "scenes", "views", "sizes", "combine", "zip", "design", "constraints", "metrics",
+              "baseline", "keep", "axes", "fixed", "timing", "reference"},
              "run");
   block.name = read.identifier(table, "name", block.at);
   read_places(read, table, catalogue, block);
-  std::string combine = "grid";
-  if (read.text(table, "combine", combine)) {
-    read.one_of(*table.get("combine"), combine, {"grid", "zip"}, "combine");
-    block.combine = combine == "zip" ? Combine::zip : Combine::grid;
-  }
   read_timing(read, table, block.timing);
   read_reference(read, table, block.reference);
   read_metrics(read, table, block.metrics);
-  read_parameters(read, table, catalogue, block);
+  read_axes(read, table, catalogue, block);
+  read_keep(read, table, block.keep);
   for (const SpecReader::Text& text : read.texts(table, "constraints", true)) {
     block.constraints.push_back({text.value, read.position(*text.node)});
   }
@@ -297,7 +184,8 @@ toml::table parse_tree(std::string_view text, const std::string& source) {
 
 Spec read_spec(const SpecReader& read, const toml::table& root, const Catalogue& catalogue) {
   Spec spec;
-  read.allow(root, {"name", "title", "description", "metrics", "timeout_s", "timing", "reference", "run"}, "the spec");
+  read.allow(root, {"name", "title", "description", "metrics", "keep", "timeout_s", "timing", "reference", "run"},
+             "the spec");
   spec.name = read.identifier(root, "name", {1, 1});
   read.text(root, "title", spec.title);
   read.text(root, "description", spec.description);
@@ -306,6 +194,7 @@ Spec read_spec(const SpecReader& read, const toml::table& root, const Catalogue&
   RunBlock defaults;
   defaults.metrics = MetricSet(kDefaultMetrics).names();
   read_metrics(read, root, defaults.metrics);
+  read_keep(read, root, defaults.keep);
   read_timing(read, root, defaults.timing);
   read_reference(read, root, defaults.reference);
 

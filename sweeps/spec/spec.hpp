@@ -36,7 +36,12 @@ struct Constraint {
   Position at;
 };
 
-enum class Combine { grid, zip };
+/// Which picture of each point stays beside the store.
+enum class Keep { nothing, png, exr };
+
+/// Axes that are walked together, as indices into RunBlock::axes. A block is the grid over its walks: a grid has a walk
+/// for each axis, a zip has one of all axes.
+using Walk = std::vector<std::size_t>;
 
 /// When a point's timing ends.
 struct TimingLimits {
@@ -59,12 +64,13 @@ struct RunBlock {
   std::vector<std::string> scenes;
   std::vector<std::string> views;  ///< empty: each scene's first
   std::vector<Size> sizes;
-  Combine combine = Combine::grid;
   std::vector<Axis> axes;
+  std::vector<Walk> walks;  ///< every axis once; the axes of a walk have equally many values
   std::vector<FixedValue> fixed;
   std::vector<Constraint> constraints;
   std::vector<std::string> metrics;  ///< of metric_names() (metrics/metrics.hpp), in that order
-  bool baseline = false;             ///< its first point is re-measured during the sweep
+  Keep keep = Keep::nothing;
+  bool baseline = false;  ///< its first point is re-measured during the sweep
   TimingLimits timing;
   ReferenceSettings reference;
   Position at;

@@ -132,10 +132,13 @@ std::string SpecReader::identifier(const toml::table& table, std::string_view ke
 std::vector<SpecReader::Text> SpecReader::texts(const toml::table& table, std::string_view key,
                                                 bool may_be_empty) const {
   const toml::node* node = table.get(key);
-  if (node == nullptr) return {};
-  const toml::array* list = node->as_array();
-  if (list == nullptr) fail(*node, fmt::format("{} is a list of strings, not {}", key, type_name(*node)));
-  if (list->empty() && !may_be_empty) fail(*node, fmt::format("{} is empty", key));
+  return node == nullptr ? std::vector<Text>{} : texts(*node, key, may_be_empty);
+}
+
+std::vector<SpecReader::Text> SpecReader::texts(const toml::node& node, std::string_view key, bool may_be_empty) const {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) fail(node, fmt::format("{} is a list of strings, not {}", key, type_name(node)));
+  if (list->empty() && !may_be_empty) fail(node, fmt::format("{} is empty", key));
   std::vector<Text> result;
   for (const toml::node& item : *list) {
     if (!item.is_string()) fail(item, fmt::format("{} is a list of strings, not of {}", key, type_name(item)));

@@ -51,6 +51,8 @@ class SpecReader {
   };
   /// A list of distinct strings; empty when the key is absent.
   std::vector<Text> texts(const toml::table&, std::string_view key, bool may_be_empty) const;
+  /// The same of a list that is no key's value; `what` names it.
+  std::vector<Text> texts(const toml::node& list, std::string_view what, bool may_be_empty) const;
   std::vector<Text> required_texts(const toml::table&, std::string_view key, Position at) const;
 
   /// A named value of [run.axes] or [run.fixed]; `scene.x = …` and `"scene.x" = …` are the same.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/metrics/metrics.hpp"
+#include "sweeps/store/select.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -47,24 +48,11 @@ const Names kReference{"reference_method",
                        "reference_lost_weight_mean",
                        "reference_trace_s"};
 constexpr std::string_view kShadow = "_shadow";
-const Names kProvenance{"gpu_bytes",  "peak_rss_bytes", "device",      "driver",          "commit",       "dirty",
-                        "scene_hash", "code_hash",      "shader_hash", "started_utc",     "timed_unix_s", "done_unix_s",
-                        "wall_s",     "argv",           "repeat",      "frame_ms_samples"};
+const Names kProvenance{"gpu_bytes",   "peak_rss_bytes",  "device",      "driver",    "host",
+                        "commit",      "dirty",           "scene_hash",  "code_hash", "shader_hash",
+                        "started_utc", "timed_unix_s",    "done_unix_s", "wall_s",    "argv",
+                        "repeat",      "frame_ms_samples"};
 constexpr std::string_view kPasses = "pass_ms.";
-
-/// A row with its objects opened: `pass_ms.fog`.
-json opened(const json& row) {
-  json flat = json::object();
-  for (const auto& [name, value] : row.items()) {
-    if (!value.is_object()) {
-      flat[name] = value;
-      continue;
-    }
-    for (const auto& [inner, inner_value] : value.items())
-      flat[name + "." + inner] = inner_value;
-  }
-  return flat;
-}
 
 std::string field(const json& row, const std::string& name) {
   const auto found = row.find(name);
@@ -126,12 +114,9 @@ std::string csv_record(const Names& fields) {
   return out + "\r\n";
 }
 
-std::string rows_to_csv(const std::vector<json>& rows) {
-  std::vector<json> flat;
-  flat.reserve(rows.size());
-  for (const json& row : rows)
-    flat.push_back(opened(row));
-  const Names names = columns(flat);
+namespace {
+
+std::string table(const std::vector<json>& flat, const Names& names) {
   std::string out = csv_record(names);
   Names fields(names.size());
   for (const json& row : flat) {
@@ -139,6 +124,25 @@ std::string rows_to_csv(const std::vector<json>& rows) {
     out += csv_record(fields);
   }
   return out;
+}
+
+std::vector<json> all_opened(const std::vector<json>& rows) {
+  std::vector<json> flat;
+  flat.reserve(rows.size());
+  for (const json& row : rows)
+    flat.push_back(opened(row));
+  return flat;
+}
+
+}  // namespace
+
+std::string rows_to_csv(const std::vector<json>& rows) {
+  const std::vector<json> flat = all_opened(rows);
+  return table(flat, columns(flat));
+}
+
+std::string rows_to_csv(const std::vector<json>& rows, const Names& names) {
+  return table(all_opened(rows), names);
 }
 
 }  // namespace pellucid::sweeps

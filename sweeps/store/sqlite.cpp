@@ -1,8 +1,13 @@
 #include "sweeps/store/sqlite.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
+#include <cstddef>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sqlite3.h>
@@ -130,7 +135,27 @@ Statement& Statement::bind(int index, double value) {
   return *this;
 }
 
+namespace {
+
+/// Turns float64 between this machine's byte order and the store's.
+[[maybe_unused]] void swap_bytes(std::span<double> values) {
+  for (double& value : values) {
+    auto bytes = std::bit_cast<std::array<std::byte, sizeof(double)>>(value);
+    std::reverse(bytes.begin(), bytes.end());
+    value = std::bit_cast<double>(bytes);
+  }
+}
+
+}  // namespace
+
 Statement& Statement::bind(int index, std::span<const double> blob) {
+  if constexpr (std::endian::native == std::endian::big) {
+    std::vector<double> swapped(blob.begin(), blob.end());
+    swap_bytes(swapped);
+    const int code = sqlite3_bind_blob64(handle_, index, swapped.data(), blob.size_bytes(), SQLITE_TRANSIENT);
+    if (code != SQLITE_OK) database_.fail(code);
+    return *this;
+  }
   const void* data = blob.empty() ? "" : static_cast<const void*>(blob.data());
   const int code = sqlite3_bind_blob64(handle_, index, data, blob.size_bytes(), SQLITE_TRANSIENT);
   if (code != SQLITE_OK) database_.fail(code);
@@ -168,6 +193,7 @@ std::size_t Statement::bytes(int column) const {
 void Statement::read(int column, std::span<double> out) const {
   assert(out.size_bytes() <= bytes(column));
   if (!out.empty()) std::memcpy(out.data(), sqlite3_column_blob(handle_, column), out.size_bytes());
+  if constexpr (std::endian::native == std::endian::big) swap_bytes(out);
 }
 
 Transaction::Transaction(Database& database) : database_(database) {

@@ -50,6 +50,7 @@ class Statement {
   Statement& bind(int index, std::string_view text);
   Statement& bind(int index, std::int64_t value);
   Statement& bind(int index, double value);
+  /// As little-endian float64, on any machine.
   Statement& bind(int index, std::span<const double> blob);
   /// False when there are no more rows.
   bool step();

@@ -1,80 +1,32 @@
 #include "sweeps/store/store.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
+#include <iterator>
 #include <map>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "gl/error.hpp"
-#include "sweeps/store/sqlite.hpp"
+#include "sweeps/store/store_state.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-constexpr int kApplicationId = 0x50454c43;  // "PELC"
-
-// Rows are flat JSON objects: their columns are the parameters of whatever techniques there are. What queries need
-// stands beside them.
-constexpr const char* kSchema = R"(
-CREATE TABLE sweeps(name TEXT PRIMARY KEY, title TEXT NOT NULL, source TEXT NOT NULL, spec TEXT NOT NULL, rank INTEGER NOT NULL);
-CREATE TABLE points(id TEXT PRIMARY KEY, failed INTEGER NOT NULL, done_unix_s REAL NOT NULL, row TEXT NOT NULL, frame_ms BLOB NOT NULL);
-CREATE TABLE members(sweep TEXT NOT NULL, rank INTEGER NOT NULL, block TEXT NOT NULL, point TEXT NOT NULL,
-                     PRIMARY KEY(sweep, rank)) WITHOUT ROWID;
-CREATE TABLE baselines(rank INTEGER PRIMARY KEY, sweep TEXT NOT NULL, point TEXT NOT NULL, unix_s REAL NOT NULL,
-                       frame_ms_median REAL NOT NULL, frame_ms BLOB NOT NULL);
-)";
-
-/// One writer at a time: a lock on a file beside the store, gone with the process however it ends.
-class WriteLock {
- public:
-  explicit WriteLock(const std::filesystem::path& store) : path_(store.string() + "-lock") {
-    for (;;) {
-      file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-      if (file_ < 0) {
-        throw RuntimeError(fmt::format("store '{}' cannot be written: {}", store.string(), std::strerror(errno)));
-      }
-      if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-        ::close(file_);
-        throw RuntimeError(fmt::format("store '{}' is being written by another sweep", store.string()));
-      }
-      // Whoever held the lock before may have removed the file in between.
-      struct stat here {};
-      struct stat there {};
-      if (::fstat(file_, &here) == 0 && ::stat(path_.c_str(), &there) == 0 && here.st_ino == there.st_ino) return;
-      ::close(file_);
-    }
-  }
-  ~WriteLock() {
-    if (file_ < 0) return;
-    ::unlink(path_.c_str());
-    ::close(file_);
-  }
-  WriteLock(const WriteLock&) = delete;
-  WriteLock& operator=(const WriteLock&) = delete;
-
- private:
-  std::string path_;
-  int file_ = -1;
-};
-
-std::vector<double> read_reals(const Statement& statement, int column) {
-  std::vector<double> values(statement.bytes(column) / sizeof(double));
-  statement.read(column, values);
-  return values;
-}
-
 /// Change of the baseline over its first measurement, linear between the measurements around `unix_s`.
-std::optional<double> drift_at(const std::vector<BaselineSample>& baselines, double unix_s) {
+std::optional<double> drift_at(const std::vector<BaselineSample>& all, const nlohmann::json& row) {
+  const double unix_s = row.value("timed_unix_s", 0.0);
+  // Another device's baseline says nothing of this row, nor another machine's. Earlier rows do not name their host.
+  const auto same = [&](const char* field, const std::string& of_baseline) {
+    return of_baseline.empty() || !row.contains(field) || row.value(field, "") == of_baseline;
+  };
+  std::vector<BaselineSample> baselines;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(baselines), [&](const BaselineSample& b) {
+    return same("device", b.device) && same("driver", b.driver) && same("host", b.host);
+  });
   if (baselines.empty()) return std::nullopt;
   const auto relative = [&](const BaselineSample& b) {
     return b.frame_ms_median / baselines.front().frame_ms_median - 1;
@@ -94,52 +46,6 @@ std::string dump(const nlohmann::json& row) {
 }
 
 }  // namespace
-
-struct Store::State {
-  std::filesystem::path path;
-  std::unique_ptr<WriteLock> lock;
-  Database database;
-
-  State(const std::filesystem::path& p, Access access)
-      : path(p),
-        lock(access == Access::write ? std::make_unique<WriteLock>(p) : nullptr),
-        database(p, access == Access::write ? Database::Mode::create : Database::Mode::read) {
-    if (access == Access::write && database.integer("SELECT count(*) FROM sqlite_master") == 0 && identity() == 0)
-      create();
-    check();
-    if (access == Access::write) database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;");
-  }
-
-  std::int64_t identity() const { return database.integer("PRAGMA application_id"); }
-
-  void create() {
-    database.run("PRAGMA journal_mode = WAL;");
-    Transaction transaction(database);
-    database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kApplicationId, kSchemaVersion));
-    database.run(kSchema);
-    transaction.commit();
-  }
-
-  void check() const {
-    if (identity() != kApplicationId)
-      throw InputError(fmt::format("store '{}' is not a Pellucid store", path.string()));
-    const std::int64_t version = database.integer("PRAGMA user_version");
-    if (version != kSchemaVersion) {
-      throw InputError(
-          fmt::format("store '{}' has schema version {}, and this program reads version {}; use the program that "
-                      "made it, or another store",
-                      path.string(), version, kSchemaVersion));
-    }
-  }
-
-  nlohmann::json parse_row(const std::string& text, const std::string& point) const {
-    nlohmann::json row = nlohmann::json::parse(text, nullptr, false);
-    if (!row.is_object()) {
-      throw InputError(fmt::format("store '{}' is damaged: the row of point {} is not JSON", path.string(), point));
-    }
-    return row;
-  }
-};
 
 Store::Store(const std::filesystem::path& path, Access access) {
   // SQLite's own names for stores that are gone when they are closed.
@@ -164,95 +70,77 @@ Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
 void Store::put_plan(const Spec& spec, const Plan& plan) {
-  Database& db = state_->database;
-  Transaction transaction(db);
-  Statement(db,
-            "INSERT INTO sweeps VALUES(?1, ?2, ?3, ?4, (SELECT count(*) FROM sweeps)) ON CONFLICT(name) DO UPDATE SET "
-            "title = ?2, source = ?3, spec = ?4")
-      .bind(1, spec.name)
-      .bind(2, spec.title)
-      .bind(3, spec.source)
-      .bind(4, spec.text)
-      .step();
-  Statement(db, "DELETE FROM members WHERE sweep = ?1").bind(1, spec.name).step();
-  Statement insert(db, "INSERT INTO members VALUES(?1, ?2, ?3, ?4)");
-  for (std::size_t i = 0; i < plan.members.size(); ++i) {
-    insert.bind(1, spec.name)
-        .bind(2, static_cast<std::int64_t>(i))
-        .bind(3, plan.members[i].block)
-        .bind(4, plan.points[plan.members[i].point].id)
-        .step();
-    insert.reset();
-  }
-  transaction.commit();
+  StoredPlan stored{spec.name, spec.title, spec.source, spec.text, {}};
+  for (const Member& member : plan.members)
+    stored.members.emplace_back(member.block, plan.points[member.point].id);
+  state_->commit([&] {
+    const Database& db = state_->database;
+    Statement rank(db, "SELECT rank FROM sweeps WHERE name = ?1");
+    const bool known = rank.bind(1, spec.name).step();
+    put(stored, static_cast<int>(known ? rank.integer(0) : db.integer("SELECT count(*) FROM sweeps")));
+    state_->view.describe(plan);
+  });
 }
 
 void Store::put_row(const std::string& point, const nlohmann::json& row, std::span<const double> frame_ms_samples) {
-  Database& db = state_->database;
-  Transaction transaction(db);
-  Statement(db, "INSERT OR REPLACE INTO points VALUES(?1, ?2, ?3, ?4, ?5)")
-      .bind(1, point)
-      .bind(2, std::int64_t{row.value("status", "") != "ok"})
-      .bind(3, row.value("done_unix_s", 0.0))
-      .bind(4, dump(row))
-      .bind(5, frame_ms_samples)
-      .step();
-  transaction.commit();
+  const StoredRow stored{point,
+                         row.value("device", ""),
+                         row.value("driver", ""),
+                         row.value("status", "") != "ok",
+                         row.value("done_unix_s", 0.0),
+                         dump(row),
+                         {frame_ms_samples.begin(), frame_ms_samples.end()}};
+  state_->commit([&] {
+    put(stored);
+    state_->view.add(row);
+  });
 }
 
 void Store::put_baseline(const std::string& sweep, const BaselineSample& sample) {
-  Database& db = state_->database;
-  Transaction transaction(db);
-  Statement(db, "INSERT INTO baselines(sweep, point, unix_s, frame_ms_median, frame_ms) VALUES(?1, ?2, ?3, ?4, ?5)")
-      .bind(1, sweep)
-      .bind(2, sample.point)
-      .bind(3, sample.unix_s)
-      .bind(4, sample.frame_ms_median)
-      .bind(5, std::span<const double>(sample.frame_ms_samples))
-      .step();
-  transaction.commit();
+  state_->commit([&] {
+    Statement(state_->database,
+              "INSERT INTO baselines(sweep, point, unix_s, frame_ms_median, frame_ms, device, driver, host) "
+              "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
+        .bind(1, sweep)
+        .bind(2, sample.point)
+        .bind(3, sample.unix_s)
+        .bind(4, sample.frame_ms_median)
+        .bind(5, std::span<const double>(sample.frame_ms_samples))
+        .bind(6, sample.device)
+        .bind(7, sample.driver)
+        .bind(8, sample.host)
+        .step();
+  });
 }
 
 void Store::remove_point(const std::string& point) {
-  Database& db = state_->database;
-  Transaction transaction(db);
-  Statement(db, "DELETE FROM points WHERE id = ?1").bind(1, point).step();
-  transaction.commit();
+  state_->commit([&] { Statement(state_->database, "DELETE FROM points WHERE id = ?1").bind(1, point).step(); });
 }
 
 std::vector<StoredPoint> Store::points() const {
   std::vector<StoredPoint> result;
-  Statement statement(state_->database, "SELECT id, failed, row FROM points ORDER BY id");
+  Statement statement(
+      state_->database,
+      "SELECT id, failed, json_extract(row, '$.technique'), json_extract(row, '$.code_hash'), device, driver, "
+      "json_extract(row, '$.commit'), json_extract(row, '$.wall_s') "
+      "FROM points WHERE json_valid(row) ORDER BY id, device, driver");
   while (statement.step()) {
-    StoredPoint point;
-    point.id = statement.text(0);
-    point.failed = statement.integer(1) != 0;
-    const nlohmann::json row = state_->parse_row(statement.text(2), point.id);
-    point.technique = row.value("technique", "");
-    point.code_hash = row.value("code_hash", "");
-    point.device = row.value("device", "");
-    point.driver = row.value("driver", "");
-    point.commit = row.value("commit", "");
-    point.wall_s = row.value("wall_s", 0.0);
-    result.push_back(std::move(point));
+    result.push_back({statement.text(0), statement.integer(1) != 0, statement.text(2), statement.text(3),
+                      statement.text(4), statement.text(5), statement.text(6), statement.real(7)});
   }
   return result;
 }
 
 std::vector<double> Store::samples(const std::string& point) const {
-  Statement statement(state_->database, "SELECT frame_ms FROM points WHERE id = ?1");
+  Statement statement(state_->database, "SELECT frame_ms FROM points WHERE id = ?1 ORDER BY device, driver");
   statement.bind(1, point);
   return statement.step() ? read_reals(statement, 0) : std::vector<double>{};
 }
 
 std::vector<BaselineSample> Store::baselines(const std::string& sweep) const {
-  Statement statement(
-      state_->database,
-      "SELECT point, unix_s, frame_ms_median, frame_ms FROM baselines WHERE sweep = ?1 ORDER BY unix_s");
-  statement.bind(1, sweep);
   std::vector<BaselineSample> result;
-  while (statement.step()) {
-    result.push_back({statement.text(0), statement.real(1), statement.real(2), read_reals(statement, 3)});
+  for (auto& [of, sample] : all_baselines()) {
+    if (of == sweep) result.push_back(std::move(sample));
   }
   // A spec whose baseline has changed starts a new series.
   if (!result.empty()) {
@@ -263,15 +151,30 @@ std::vector<BaselineSample> Store::baselines(const std::string& sweep) const {
 }
 
 std::vector<BlockStatus> Store::status() const {
+  const Database& db = state_->database;
+  std::vector<std::pair<std::string, std::string>> devices;
+  Statement names(db, "SELECT DISTINCT device, driver FROM points WHERE device <> '' ORDER BY device, driver");
+  while (names.step())
+    devices.emplace_back(names.text(0), names.text(1));
+  const bool several = devices.size() > 1;
+  if (devices.empty()) devices.emplace_back();
   Statement statement(
-      state_->database,
+      db,
       "SELECT m.sweep, m.block, count(*), count(p.id) - coalesce(sum(p.failed), 0), coalesce(sum(p.failed), 0) "
       "FROM members m JOIN sweeps s ON s.name = m.sweep LEFT JOIN points p ON p.id = m.point "
+      "AND (p.device = '' OR p.device = ?1 AND p.driver = ?2) "
       "GROUP BY m.sweep, m.block ORDER BY s.rank, min(m.rank)");
   std::vector<BlockStatus> result;
-  while (statement.step()) {
-    const auto count = [&](int column) { return static_cast<std::size_t>(statement.integer(column)); };
-    result.push_back({statement.text(0), statement.text(1), count(2), count(3), count(4)});
+  for (const auto& [device, driver] : devices) {
+    statement.bind(1, device).bind(2, driver);
+    while (statement.step()) {
+      const auto count = [&](int column) { return static_cast<std::size_t>(statement.integer(column)); };
+      const bool none = several && count(3) + count(4) == 0;  // a sweep that never ran on this device
+      if (none) continue;
+      result.push_back({statement.text(0), statement.text(1), count(2), count(3), count(4),
+                        device.empty() ? "" : device + ", " + driver});
+    }
+    statement.reset();
   }
   return result;
 }
@@ -283,25 +186,28 @@ std::optional<std::string> Store::spec_text(const std::string& sweep) const {
   return statement.text(0);
 }
 
-std::vector<nlohmann::json> Store::rows(bool with_samples) const {
+std::vector<nlohmann::json> Store::rows(bool with_samples, bool all) const {
   Statement statement(
       state_->database,
-      "SELECT m.sweep, m.block, p.id, p.row, p.frame_ms FROM members m JOIN sweeps s ON s.name = m.sweep "
-      "JOIN points p ON p.id = m.point ORDER BY s.rank, m.rank");
+      all ? "SELECT '', '', id, row, frame_ms FROM points ORDER BY id, device, driver"
+          : "SELECT m.sweep, m.block, p.id, p.row, p.frame_ms FROM members m JOIN sweeps s ON s.name = m.sweep "
+            "JOIN points p ON p.id = m.point ORDER BY s.rank, m.rank, p.device, p.driver");
   std::map<std::string, std::vector<BaselineSample>> baselines_of;
   std::vector<nlohmann::json> result;
   while (statement.step()) {
     nlohmann::json row = state_->parse_row(statement.text(3), statement.text(2));
-    const std::string sweep = statement.text(0);
-    const auto [known, is_new] = baselines_of.try_emplace(sweep);
-    if (is_new) known->second = baselines(sweep);
     row["point"] = statement.text(2);
-    row["sweep"] = sweep;
-    row["block"] = statement.text(1);
-    const bool timed = row.value("timing", "off") != "off";
-    const auto drift = timed ? drift_at(known->second, row.value("timed_unix_s", 0.0)) : std::nullopt;
-    row["baseline_drift"] = drift ? nlohmann::json(*drift) : nlohmann::json();
     if (with_samples) row["frame_ms_samples"] = read_reals(statement, 4);
+    if (!all) {
+      const std::string sweep = statement.text(0);
+      const auto [known, is_new] = baselines_of.try_emplace(sweep);
+      if (is_new) known->second = baselines(sweep);
+      row["sweep"] = sweep;
+      row["block"] = statement.text(1);
+      const bool timed = row.value("timing", "off") != "off";
+      const auto drift = timed ? drift_at(known->second, row) : std::nullopt;
+      row["baseline_drift"] = drift ? nlohmann::json(*drift) : nlohmann::json();
+    }
     result.push_back(std::move(row));
   }
   return result;

@@ -1,6 +1,7 @@
 #include "sweeps/tables/table_fill.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -73,6 +74,7 @@ class GroupFiller {
     out_.variables = merged(spec.all.variables, group_.variables);
     out_.name = expand(group_.name, out_.variables);
     out_.places = places(spec.family);
+    by_family_[spec.family] = out_.places;
   }
 
   FilledGroup fill() {
@@ -103,6 +105,11 @@ class GroupFiller {
       found.push_back({std::move(name), row, outcome(row)});
     }
     return found;
+  }
+
+  const std::vector<TablePlace>& places_of(const std::string& family) {
+    const auto found = by_family_.find(family);
+    return found != by_family_.end() ? found->second : by_family_[family] = places(family);
   }
 
   FilledLine fill(const TableLine& line) {
@@ -152,12 +159,12 @@ class GroupFiller {
   void fill_ours(FilledLine& filled) {
     const TableLine& line = *filled.line;
     const Quantity& quantity = *filled.quantity;
-    const auto from = line.family.empty() ? out_.places : places(line.family);
+    const std::vector<TablePlace> from = places_of(line.family.empty() ? spec_.family : line.family);
     const auto value = [&](const TablePlace& place, const Quantity& of) {
       return place.measured() ? value_of(of, *place.row) : std::nullopt;
     };
     std::vector<TablePlace> under;
-    if (!line.over.empty()) under = places(line.over);
+    if (!line.over.empty()) under = places_of(line.over);
     for (std::size_t i = 0; i < from.size(); ++i) {
       std::optional<double> number = value(from[i], quantity);
       if (!under.empty()) number = ratio(number, value(under[i], quantity));
@@ -225,6 +232,7 @@ class GroupFiller {
   const TableEntry& group_;
   std::size_t number_;
   FilledGroup out_;
+  std::map<std::string, std::vector<TablePlace>> by_family_;
 };
 
 }  // namespace

@@ -129,7 +129,7 @@ std::string number_column(const Table& table, std::size_t column) {
 
 std::string columns_text(const Table& table, const LatexOptions& options) {
   const std::size_t count = table.rows.front().cells.size();
-  if (!options.siunitx) return "l" + std::string(count, 'r');
+  if (!options.siunitx) return std::string("l").append(count, 'r');
   std::string text = "l";
   for (std::size_t i = 0; i < count; ++i)
     text += "\n    " + number_column(table, i);

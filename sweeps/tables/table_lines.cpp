@@ -90,6 +90,7 @@ void read_relative_to(TableReader& reader, const TableSpec& spec, TableLine& lin
   }
   for (const toml::node& column : list_of(reader, *node, "relative_to", spec.columns.size(), "column"))
     line.relative_to.push_back(read_column(reader, column, spec));
+  if (line.label.empty()) reader.fail("relative_to", "a row relative to several columns needs a label");
 }
 
 void read_count(TableReader& reader, const char* key, double most, std::optional<int>& count) {
@@ -170,7 +171,12 @@ TableLine read_line(TableReader& reader, const TableSpec& spec) {
   read_relative_to(reader, spec, line);
   reader.exclude("over", "relative_to");
   line.id = line.quantity;
+  if (!line.family.empty()) line.id += "_" + line.family;
+  if (!line.over.empty()) line.id += "_over_" + line.over;
+  if (!line.relative_to.empty()) line.id += "_relative";
   reader.text("id", line.id);
+  if (spec.find_line(line.id) != nullptr)
+    reader.fail("id", fmt::format("'{}' names an earlier row; give one of them an id of its own", line.id));
   reader.text("json_quantity", line.json_quantity);
   check_quantity(reader, spec, line);
   if (line.is_ratio() && !line.decimals && !line.digits) line.decimals = 2;

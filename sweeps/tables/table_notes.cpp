@@ -6,7 +6,7 @@
 #include <toml++/toml.h>
 
 #include "algorithms/scene/scene.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "sweeps/tables/table_fill.hpp"
 
 namespace pellucid::sweeps {

@@ -179,7 +179,7 @@ TableSpec read_table_spec(const PaperEntry& entry) {
   spec.info.address = paper.address(entry.name);
   reader.text("title", spec.info.title, Need::required);
   reader.text("source", spec.info.source);
-  if (spec.info.source.empty()) spec.info.source = paper.source;
+  if (spec.info.source.empty()) spec.info.source = paper.source.empty() ? "ours" : paper.source;
   spec.info.spec = read_sweep(reader, paper);
   for (const PaperSweep& sweep : paper.sweeps) {
     if (sweep.name == spec.info.spec) spec.info.spec_path = sweep.spec;

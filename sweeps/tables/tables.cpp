@@ -54,15 +54,12 @@ std::vector<TableInfo> tables() {
   return infos;
 }
 
-std::vector<TableInfo> tables_of(const PaperPointer& paper) {
-  std::vector<TableInfo> infos;
-  for (const std::string& name : entry_names(*paper, "tables"))
-    infos.push_back(read_table_spec({paper, name}).info);
-  return infos;
+TableInfo find_table(std::string_view name) {
+  return find_table(find_entry(name, "tables", "table"));
 }
 
-TableInfo find_table(std::string_view name) {
-  return read_table_spec(find_entry(name, "tables", "table")).info;
+TableInfo find_table(const PaperEntry& entry) {
+  return read_table_spec(entry).info;
 }
 
 Table make_table(std::string_view name, const std::vector<json>& rows, std::string_view device) {

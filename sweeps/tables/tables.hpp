@@ -17,7 +17,7 @@
 namespace pellucid::sweeps {
 
 struct TableInfo {
-  std::string name;       ///< "sampling_hulls.table1"
+  std::string name;       ///< "PAPER.table1"
   std::string address;    ///< what the command line calls it: the name, or "my.toml:table1"
   std::string title;      ///< the caption
   std::string source;     ///< paper and table of the published numbers
@@ -25,13 +25,13 @@ struct TableInfo {
   std::string spec_path;  ///< what `pellucid sweep run` takes for it: the same name, or the file
 };
 
-/// Every table of the built-in papers, and those of one paper.
+/// Every table of the built-in papers.
 std::vector<TableInfo> tables();
-std::vector<TableInfo> tables_of(const PaperPointer&);
 
 /// "PAPER.NAME", "NAME" where one paper alone has such a table, or "FILE.toml:NAME". Throws InputError with the nearest
 /// name when there is none.
 TableInfo find_table(std::string_view name);
+TableInfo find_table(const PaperEntry&);
 
 /// One cell of a table. `value` is what a program should read, `text` what is set for people: rounded, and with a
 /// dagger where the frame time did not converge.

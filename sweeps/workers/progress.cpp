@@ -17,9 +17,10 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-SweepProgress::SweepProgress(std::size_t total, std::size_t done, double expected_s, bool quiet)
+SweepProgress::SweepProgress(std::size_t total, std::size_t done, double expected_s, std::size_t workers, bool quiet)
     : total_(total),
       done_(done),
+      workers_(workers),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       expected_s_(expected_s),
@@ -49,9 +50,15 @@ void SweepProgress::tick() {
   draw();
 }
 
+/// How long a point takes, shared among those that are in work at a time.
+double SweepProgress::each_s() const {
+  const double alone = measured_ > 0 ? measured_s_ / static_cast<double>(measured_) : expected_s_;
+  return alone / static_cast<double>(workers_);
+}
+
 void SweepProgress::draw() {
   const double in_point = std::chrono::duration<double>(std::chrono::steady_clock::now() - point_start_).count();
-  const double each = measured_ > 0 ? measured_s_ / static_cast<double>(measured_) : expected_s_;
+  const double each = each_s();
   const double left = each * static_cast<double>(total_ - done_) - std::min(in_point, each);
   constexpr std::size_t kBar = 24;
   const std::size_t filled = total_ > 0 ? kBar * done_ / total_ : kBar;
@@ -75,13 +82,13 @@ void SweepProgress::clear() {
   drawn_ = false;
 }
 
-void SweepProgress::finish(std::string_view outcome, double wall_s) {
+void SweepProgress::finish(std::string_view what, std::string_view outcome, double wall_s) {
   ++done_;
   ++measured_;
   measured_s_ += wall_s;
   if (quiet_ || terminal_) return;
-  const double left = measured_s_ / static_cast<double>(measured_) * static_cast<double>(total_ - done_);
-  fmt::print(stderr, "{}/{} {}: {} ({} left)\n", done_, total_, what_, outcome, duration_text(left));
+  const double left = each_s() * static_cast<double>(total_ - done_);
+  fmt::print(stderr, "{}/{} {}: {} ({} left)\n", done_, total_, what, outcome, duration_text(left));
   std::fflush(stderr);
 }
 

@@ -15,7 +15,8 @@ class SweepProgress {
  public:
   /// `total` points, of which `done` are done; `expected_s` is a guess at one point's time until there is a measured
   /// one.
-  SweepProgress(std::size_t total, std::size_t done, double expected_s, bool quiet);
+  /// `workers` points are in work at a time.
+  SweepProgress(std::size_t total, std::size_t done, double expected_s, std::size_t workers, bool quiet);
   ~SweepProgress();
   SweepProgress(const SweepProgress&) = delete;
   SweepProgress& operator=(const SweepProgress&) = delete;
@@ -24,14 +25,15 @@ class SweepProgress {
   void phase(std::string_view name, double share);
   /// Redraws the clock; called a few times a second.
   void tick();
-  void finish(std::string_view outcome, double wall_s);
+  void finish(std::string_view what, std::string_view outcome, double wall_s);
   /// A line of its own, above the bar.
   void note(std::string_view line);
 
  private:
   void draw();
   void clear();
-  std::size_t total_, done_;
+  double each_s() const;
+  std::size_t total_, done_, workers_;
   bool quiet_, terminal_;
   double expected_s_, measured_s_ = 0;
   std::size_t measured_ = 0;

@@ -1,16 +1,23 @@
 #include "sweeps/workers/run.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
+#include "sweeps/measure/quiet_lock.hpp"
+#include "sweeps/quantities/quantities.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
@@ -73,14 +80,41 @@ class Runner {
         argv_(shell_line(options.argv.empty() ? process_argv() : options.argv)),
         store_(path, Access::write),
         references_(options.references.value_or(path.string() + ".references")),
-        client_(options.worker, options.device, spec.timeout_s) {}
+        quiet_file_(options.devices.size() > 1) {
+    std::vector<std::optional<int>> devices(options.devices.begin(), options.devices.end());
+    if (devices.empty()) devices.emplace_back();
+    for (const std::optional<int>& device : devices)
+      workers_.push_back(std::make_unique<Worker>(options.worker, device, spec.timeout_s, quiet_file_.path()));
+  }
 
   SweepSummary run() {
     const auto start = SteadyClock::now();
+    std::map<std::string, ColumnMeaning> meanings;
+    for (const Quantity& quantity : quantities())
+      meanings[quantity.name] = {quantity.unit, quantity.doc};
+    store_.explain(std::move(meanings));
     store_.put_plan(spec_, plan_);
-    const std::vector<std::size_t> pending = choose();
-    if (!pending.empty()) measure_all(pending);
+    for (const std::size_t index : plan_.order) {
+      const Point& point = plan_.points[index];
+      const bool wanted = !options_.timed || *options_.timed == point.timing.enabled;
+      if (wanted && options_.shard.holds(point)) mine_.push_back(index);
+    }
+    summary_.planned = mine_.size();
+    record_.host = host_name();
+    for (StoredPoint& point : store_.points()) {
+      if (!point.device.empty()) devices_.emplace(point.device, point.driver);
+      stored_[point.id].push_back(std::move(point));
+    }
+    // Whether a point is missing on a device is known once its worker has said hello; on the only one, at once.
+    if (!options_.devices.empty() || devices_.size() > 1 || missing_on_the_only_device()) {
+      measure_all(start);
+    } else if (!devices_.empty()) {
+      choose(*devices_.begin());
+    } else {
+      choose({});
+    }
     for (const BaselineSample& sample : store_.baselines(spec_.name)) {
+      if (sample.device != record_.device || sample.driver != record_.driver || sample.host != record_.host) continue;
       if (!baseline_first_) baseline_first_ = sample.frame_ms_median;
       const double drift = std::abs(sample.frame_ms_median / *baseline_first_ - 1);
       summary_.baseline_drift = std::max(summary_.baseline_drift.value_or(0), drift);
@@ -91,137 +125,251 @@ class Runner {
   }
 
  private:
-  /// The points that are still to be measured, in the plan's order.
-  std::vector<std::size_t> choose() {
-    std::map<std::string, StoredPoint> stored;
-    for (StoredPoint& point : store_.points())
-      stored.emplace(point.id, std::move(point));
+  static constexpr std::size_t kNeverMeasured = static_cast<std::size_t>(-1);  // in this call: due at once
+
+  /// One worker process and what the parent keeps of it.
+  struct Worker {
+    WorkerClient client;
+    std::size_t since_baseline = kNeverMeasured;
+    bool baseline_broken = false;
+    Worker(const std::vector<std::string>& command, std::optional<int> device, double timeout_s,
+           const std::filesystem::path& quiet)
+        : client(command, device, timeout_s, quiet) {}
+  };
+
+  bool missing_on_the_only_device() const {
+    return std::any_of(mine_.begin(), mine_.end(), [&](std::size_t index) {
+      const auto found = stored_.find(plan_.points[index].id);
+      return found == stored_.end() || (found->second.front().failed && options_.retry_failed);
+    });
+  }
+
+  /// Fills `pending_` with the points that are still to be measured on a device and driver, in the plan's order.
+  void choose(const std::pair<std::string, std::string>& device) {
+    if (!device.first.empty()) summary_.device = device.first + ", " + device.second;
+    record_.device = device.first;
+    record_.driver = device.second;
     std::set<std::string> other_commits;
     std::size_t other_rows = 0;
-    std::vector<std::size_t> pending;
     double known_s = 0;
-    for (const std::size_t index : plan_.order) {
-      const auto found = stored.find(plan_.points[index].id);
-      if (found == stored.end() || (found->second.failed && options_.retry_failed)) {
-        pending.push_back(index);
+    for (const std::size_t index : mine_) {
+      const StoredPoint* known = nullptr;
+      if (const auto found = stored_.find(plan_.points[index].id); found != stored_.end()) {
+        for (const StoredPoint& point : found->second) {
+          if (point.device.empty() || (point.device == device.first && point.driver == device.second)) known = &point;
+        }
+      }
+      if (known == nullptr || (known->failed && options_.retry_failed)) {
+        pending_.push_back(index);
         continue;
       }
       ++summary_.reused;
-      known_s += found->second.wall_s;
-      if (found->second.commit == kCommit || found->second.failed) continue;
+      known_s += known->wall_s;
+      if (known->commit == kCommit || known->failed) continue;
       ++other_rows;
-      other_commits.insert(found->second.commit.substr(0, 12));
+      other_commits.insert(known->commit.substr(0, 12));
     }
-    for (const auto& [id, point] : stored) {
-      if (!point.device.empty()) devices_.emplace(point.device, point.driver);
-    }
-    summary_.planned = plan_.points.size();
     if (summary_.reused > 0) expected_s_ = known_s / static_cast<double>(summary_.reused);
     if (!other_commits.empty() && !options_.quiet) {
       fmt::print(stderr, "warning: {} of the rows in '{}' were measured by another commit ({}); this is {}\n",
                  other_rows, path_.string(), fmt::join(other_commits, ", "), std::string(kCommit).substr(0, 12));
     }
-    if (options_.limit > 0 && pending.size() > options_.limit) pending.resize(options_.limit);
-    return pending;
+    if (options_.limit > 0 && pending_.size() > options_.limit) pending_.resize(options_.limit);
   }
 
-  void measure_all(const std::vector<std::size_t>& pending) {
+  void measure_all(SteadyClock::time_point start) {
     const StopSignals signals;
-    SweepProgress progress(summary_.reused + pending.size(), summary_.reused, expected_s_, options_.quiet);
-    progress_ = &progress;
-    const WorkerClient::Hooks hooks{[&](const std::string& phase, double share) { progress.phase(phase, share); },
-                                    [&] {
-                                      progress.tick();
-                                      return !signals.caught();
-                                    }};
-    for (const std::size_t index : pending) {
-      const Point& point = plan_.points[index];
-      if (signals.caught() || !ready(hooks)) break;
-      if (point.timing.enabled && baseline_due()) measure_baseline(hooks);
-      if (signals.caught() || !ready(hooks)) break;
-      if (!measure(point, hooks)) break;
+    signals_ = &signals;
+    start_ = start;
+    Worker& first = *workers_.front();
+    {
+      SweepProgress starting(0, 0, 0, 1, options_.quiet);
+      progress_ = &starting;
+      if (!ready(first)) {
+        summary_.interrupted = true;
+        return;
+      }
     }
-    if (!signals.caught() && baseline_due_at_end() && ready(hooks)) measure_baseline(hooks);
-    summary_.interrupted = signals.caught();
-    if (!summary_.interrupted) client_.close();
+    const WorkerClient::Hello hello = first.client.hello();
+    if (!devices_.empty() && !devices_.contains({hello.device, hello.driver}) && !options_.quiet) {
+      fmt::print(stderr, "note: '{}' holds rows of {} ({}) too; those of {} ({}) are kept apart\n", path_.string(),
+                 devices_.begin()->first, devices_.begin()->second, hello.device, hello.driver);
+    }
+    choose({hello.device, hello.driver});
+    record_.sweep = spec_.name;
+    if (options_.shard.count > 1) record_.shard = fmt::format("{}/{}", options_.shard.index, options_.shard.count);
+    record_.started_unix_s = unix_now_s();
+    SweepProgress progress(summary_.reused + pending_.size(), summary_.reused, expected_s_, workers_.size(),
+                           options_.quiet);
+    progress_ = &progress;
+    if (!pending_.empty()) {
+      run_ = store_.add_run(record_);
+      std::vector<std::thread> others;
+      for (std::size_t i = 1; i < workers_.size(); ++i)
+        others.emplace_back([this, i] { work(*workers_[i]); });
+      work(first);
+      for (std::thread& other : others)
+        other.join();
+      if (error_) std::rethrow_exception(error_);
+      update_run(true);
+    }
+    summary_.interrupted = signals.caught() || (signals.warned() && next_ < pending_.size());
+    if (!signals.caught()) first.client.close();
     progress_ = nullptr;
   }
 
-  /// A worker that has said hello; false when stopped meanwhile.
-  bool ready(const WorkerClient::Hooks& hooks) {
-    if (client_.running()) return true;
-    progress_->begin("starting a worker");
-    if (!client_.start(hooks)) return false;
-    const WorkerClient::Hello& hello = client_.hello();
-    for (const auto& [device, driver] : devices_) {
-      if (device == hello.device && driver == hello.driver) continue;
-      throw InputError(fmt::format(
-          "store '{}' holds measurements of {} ({}), and this worker renders on {} ({}): times of different "
-          "devices are not mixed; use another store or --device",
-          path_.string(), device, driver, hello.device, hello.driver));
+  /// Takes points until there are none left, in a thread of its own for each worker but the first.
+  void work(Worker& worker) {
+    try {
+      while (const Point* point = next_point()) {
+        if (!ready(worker)) break;
+        if (point->timing.enabled && baseline_due(worker)) measure_baseline(worker);
+        if (stopping() || !ready(worker)) break;
+        if (!measure(worker, *point)) break;
+      }
+      const bool due = plan_.baseline && !worker.baseline_broken && worker.since_baseline > 0 &&
+                       worker.since_baseline != kNeverMeasured;
+      if (!stopping() && due && ready(worker)) measure_baseline(worker);
+      if (!stopping() && &worker != workers_.front().get()) worker.client.close();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      broken_ = true;
     }
-    devices_.emplace(hello.device, hello.driver);
+  }
+
+  const Point* next_point() {
+    const std::lock_guard lock(mutex_);
+    if (stopping() || signals_->warned() || given_up_ || next_ == pending_.size()) return nullptr;
+    return &plan_.points[pending_[next_++]];
+  }
+
+  bool stopping() const { return signals_->caught() || broken_; }
+
+  WorkerClient::Hooks hooks() {
+    return {[this](const std::string& phase, double share) {
+              const std::lock_guard lock(mutex_);
+              progress_->phase(phase, share);
+            },
+            [this] {
+              const std::lock_guard lock(mutex_);
+              progress_->tick();
+              return !stopping();
+            }};
+  }
+
+  void show(const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    progress_->begin(what);
+  }
+
+  /// A worker that has said hello; false when stopped meanwhile.
+  bool ready(Worker& worker) {
+    if (worker.client.running()) return true;
+    show("starting a worker");
+    const auto start = SteadyClock::now();
+    if (!worker.client.start(hooks())) return false;
+    const std::lock_guard lock(mutex_);
+    record_.starting_s += seconds_since(start);
+    const WorkerClient::Hello& hello = worker.client.hello();
+    const WorkerClient::Hello& first = workers_.front()->client.hello();
+    if (&worker != workers_.front().get() && (hello.device != first.device || hello.driver != first.driver)) {
+      throw InputError(
+          fmt::format("the devices differ: {} ({}) and {} ({}); their times are not comparable, so give each kind a "
+                      "run of its own, with the same store if you like",
+                      first.device, first.driver, hello.device, hello.driver));
+    }
     return true;
   }
 
-  bool baseline_due() const { return plan_.baseline && !baseline_broken_ && since_baseline_ >= kBaselineEvery; }
-  bool baseline_due_at_end() const {
-    return plan_.baseline && !baseline_broken_ && since_baseline_ > 0 && since_baseline_ != kNeverMeasured;
+  bool baseline_due(const Worker& worker) const {
+    return plan_.baseline && !worker.baseline_broken && worker.since_baseline >= kBaselineEvery;
   }
 
-  void measure_baseline(const WorkerClient::Hooks& hooks) {
+  WorkerClient::Answer ask(Worker& worker, const json& request, const std::string& id) {
+    const auto start = SteadyClock::now();
+    WorkerClient::Answer answer = worker.client.ask(request, id, hooks());
+    const std::lock_guard lock(mutex_);
+    record_.measuring_s += seconds_since(start) / static_cast<double>(workers_.size());
+    return answer;
+  }
+
+  void measure_baseline(Worker& worker) {
     Point point = plan_.points[*plan_.baseline];
     point.timing.max_samples = point.timing.min_samples;
-    progress_->begin("baseline " + describe(point));
-    const WorkerClient::Answer answer =
-        client_.ask({{"type", "time"}, {"point", point_to_json(point)}}, point.id, hooks);
+    show("baseline " + describe(point));
+    const WorkerClient::Answer answer = ask(worker, {{"type", "time"}, {"point", point_to_json(point)}}, point.id);
     if (answer.outcome == WorkerClient::Outcome::stopped) return;
-    if (answer.outcome == WorkerClient::Outcome::failed || !flaw(answer.row, point).empty()) {
-      baseline_broken_ = true;
-      progress_->note(
-          fmt::format("warning: the baseline cannot be measured, so drift is not known: {}",
-                      answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw(answer.row, point)));
+    const std::string wrong = answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw(answer.row, point);
+    const std::lock_guard lock(mutex_);
+    if (!wrong.empty()) {
+      worker.baseline_broken = true;
+      progress_->note(fmt::format("warning: the baseline cannot be measured, so drift is not known: {}", wrong));
       return;
     }
+    const WorkerClient::Hello& hello = worker.client.hello();
     store_.put_baseline(spec_.name, {point.id, answer.row.value("timed_unix_s", unix_now_s()),
-                                     answer.row.at("frame_ms_median").get<double>(), answer.frame_ms_samples});
-    since_baseline_ = 0;
+                                     answer.row.at("frame_ms_median").get<double>(), answer.frame_ms_samples,
+                                     hello.device, hello.driver, record_.host});
+    worker.since_baseline = 0;
   }
 
   /// Measures a point and commits its row, whatever came of it; false when stopped meanwhile.
-  bool measure(const Point& point, const WorkerClient::Hooks& hooks) {
-    progress_->begin(describe(point));
+  bool measure(Worker& worker, const Point& point) {
+    const std::string what = describe(point);
+    show(what);
     const double started = unix_now_s();
     const auto start = SteadyClock::now();
     json request{{"type", "measure"}, {"point", point_to_json(point)}, {"references", references_.string()}};
-    WorkerClient::Answer answer = client_.ask(request, point.id, hooks);
+    if (point.keep != Keep::nothing) request["picture"] = picture_path(path_, point).string();
+    WorkerClient::Answer answer = ask(worker, request, point.id);
+    if (answer.killed && !stopping()) {  // by somebody, or for want of memory: once more, with a fresh worker
+      if (!ready(worker)) return false;
+      show(what);
+      answer = ask(worker, request, point.id);
+    }
     if (answer.outcome == WorkerClient::Outcome::stopped) return false;
     std::string failure = answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw(answer.row, point);
 
     json row = failure.empty() ? std::move(answer.row) : json::object();
     const double wall_s = seconds_since(start);
-    describe_row(row, point);
+    describe_row(row, point, worker.client.hello());
     row["status"] = failure.empty() ? "ok" : "failed";
     row["failure"] = failure;
     row["started_utc"] = utc_text(started);
     row["done_unix_s"] = unix_now_s();
     row["wall_s"] = wall_s;
-    store_.put_row(point.id, row, failure.empty() ? answer.frame_ms_samples : std::vector<double>{});
 
-    if (point.timing.enabled && since_baseline_ != kNeverMeasured) ++since_baseline_;
+    const std::lock_guard lock(mutex_);
+    const auto storing = SteadyClock::now();
+    store_.put_row(point.id, row, failure.empty() ? answer.frame_ms_samples : std::vector<double>{});
+    ++record_.points;
+    record_.storing_s += seconds_since(storing);
+    update_run(false);
+
+    if (point.timing.enabled && worker.since_baseline != kNeverMeasured) ++worker.since_baseline;
     if (!failure.empty()) {
       ++summary_.failed;
       progress_->note(fmt::format("failed: {}\n  repeat: {}", failure, repeat_command(point)));
+      if (options_.fail_after > 0 && summary_.failed >= options_.fail_after) given_up_ = summary_.gave_up = true;
     } else {
       ++summary_.measured;
       if (row.value("timing", "") == "unconverged") ++summary_.unconverged;
     }
-    progress_->finish(failure.empty() ? outcome_text(row) : "failed", wall_s);
+    progress_->finish(what, failure.empty() ? outcome_text(row) : "failed", wall_s);
     return true;
   }
 
+  /// Brings the record of this run up to date, every few seconds or when it ends.
+  void update_run(bool last) {
+    record_.wall_s = seconds_since(start_);
+    if (!last && record_.wall_s < updated_s_ + kUpdateEvery_s) return;
+    updated_s_ = record_.wall_s;
+    store_.update_run(run_, record_);
+  }
+
   /// What is known of a row without a worker.
-  void describe_row(json& row, const Point& point) const {
+  void describe_row(json& row, const Point& point, const WorkerClient::Hello& hello) const {
     for (const auto& [name, value] : point.parameters)
       row[name] = value_to_json(value);
     row["technique"] = point.technique;
@@ -230,9 +378,10 @@ class Runner {
     row["width"] = point.size.width;
     row["height"] = point.size.height;
     row["repeat"] = repeat_command(point);
-    row["device"] = client_.hello().device;
-    row["driver"] = client_.hello().driver;
-    if (!row.contains("clock")) row["clock"] = client_.hello().clock;
+    row["device"] = hello.device;
+    row["driver"] = hello.driver;
+    row["host"] = record_.host;
+    if (!row.contains("clock")) row["clock"] = hello.clock;
     if (!row.contains("scene_hash")) row["scene_hash"] = point.scene_hash;
     row["code_hash"] = point.code_hash;
     row["commit"] = kCommit;
@@ -240,7 +389,7 @@ class Runner {
     row["argv"] = argv_;
   }
 
-  static constexpr std::size_t kNeverMeasured = static_cast<std::size_t>(-1);  // in this call: due at once
+  static constexpr double kUpdateEvery_s = 5;
 
   const Spec& spec_;
   const Plan& plan_;
@@ -249,13 +398,26 @@ class Runner {
   std::string argv_;
   Store store_;
   std::filesystem::path references_;
-  WorkerClient client_;
+  QuietFile quiet_file_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<std::size_t> mine_, pending_;
+  std::map<std::string, std::vector<StoredPoint>> stored_;
+  std::set<std::pair<std::string, std::string>> devices_;  // in the store
+  const StopSignals* signals_ = nullptr;
+  double expected_s_ = 0;
+
+  // Shared by the workers' threads, under the mutex.
+  std::mutex mutex_;
+  std::size_t next_ = 0;
   SweepProgress* progress_ = nullptr;
   SweepSummary summary_;
-  std::set<std::pair<std::string, std::string>> devices_;
-  double expected_s_ = 0;
-  std::size_t since_baseline_ = kNeverMeasured;
-  bool baseline_broken_ = false;
+  RunRecord record_;
+  std::int64_t run_ = 0;
+  SteadyClock::time_point start_{};
+  double updated_s_ = 0;
+  std::exception_ptr error_;
+  std::atomic<bool> given_up_ = false;  // after `fail_after` failures: no more points
+  std::atomic<bool> broken_ = false;    // there is an error: stop at once
   std::optional<double> baseline_first_;
 };
 

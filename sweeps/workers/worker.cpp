@@ -77,9 +77,15 @@ json answer(Measurer& measurer, const json& request) {
   const std::string id = request.at("point").at("id");
   try {
     const Point point = point_from_json(request.at("point"));
-    const bool whole = request.at("type") == "measure";
+    const std::string type = request.at("type");
+    if (type == "reference") {
+      measurer.trace(point, request.at("references").get<std::string>());
+      return {{"type", "done"}, {"id", id}, {"row", json::object()}, {"frame_ms_samples", json::array()}};
+    }
+    const bool whole = type == "measure";
     Measurement result =
-        whole ? measurer.measure(point, request.at("references").get<std::string>()) : measurer.time(point);
+        whole ? measurer.measure(point, request.at("references").get<std::string>(), request.value("picture", ""))
+              : measurer.time(point);
     return {{"type", "done"},
             {"id", id},
             {"row", std::move(result.row)},
@@ -91,7 +97,7 @@ json answer(Measurer& measurer, const json& request) {
 
 }  // namespace
 
-int run_worker(std::optional<int> device) {
+int run_worker(std::optional<int> device, const std::filesystem::path& quiet) {
   Line line;
   gl::ContextOptions options;
   options.device = device;
@@ -104,7 +110,7 @@ int run_worker(std::optional<int> device) {
              {"clock", gl::name(timer.clock())}});
 
   Ticker ticker(line);
-  Measurer measurer([&](const char* phase, double share) { ticker(phase, share); });
+  Measurer measurer([&](const char* phase, double share) { ticker(phase, share); }, quiet);
   for (std::string text; std::getline(std::cin, text);) {
     const json request = json::parse(text, nullptr, false);
     if (!request.is_object() || !request.contains("type") || !request.contains("point") ||

@@ -45,11 +45,13 @@ T field(const json& message, const char* name, T otherwise) {
 
 }  // namespace
 
-WorkerClient::WorkerClient(std::vector<std::string> command, std::optional<int> device, double timeout_s)
+WorkerClient::WorkerClient(std::vector<std::string> command, std::optional<int> device, double timeout_s,
+                           const std::filesystem::path& quiet)
     : command_(std::move(command)), timeout_s_(timeout_s) {
   if (command_.empty()) {
     command_ = {"/proc/self/exe", "worker"};
     if (device) command_.insert(command_.end(), {"--device", std::to_string(*device)});
+    if (!quiet.empty()) command_.insert(command_.end(), {"--quiet-lock", quiet.string()});
   }
 }
 
@@ -84,6 +86,8 @@ WorkerClient::Answer WorkerClient::crashed(const std::string& why) {
   const std::string words = process_->last_words();
   process_.reset();
   Answer answer;
+  answer.killed =
+      why.empty() && (end.starts_with("was killed by signal 9 ") || end.starts_with("was killed by signal 15 "));
   answer.reason = why.empty() ? fmt::format("the worker {}", end) : why;
   if (!words.empty()) answer.reason += fmt::format("; its last words: {}", words);
   return answer;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -28,11 +29,14 @@ class WorkerClient {
     Outcome outcome = Outcome::failed;
     nlohmann::json row;
     std::vector<double> frame_ms_samples;
-    std::string reason;  ///< of a failure, one line
+    std::string reason;   ///< of a failure, one line
+    bool killed = false;  ///< the worker was, from outside, by SIGKILL or SIGTERM: the point may be as good as any
   };
 
   /// `command` empty: this executable with `worker`. `timeout_s` is a request's budget, and the start's.
-  WorkerClient(std::vector<std::string> command, std::optional<int> device, double timeout_s);
+  /// `quiet`: see run_worker().
+  WorkerClient(std::vector<std::string> command, std::optional<int> device, double timeout_s,
+               const std::filesystem::path& quiet = {});
 
   bool running() const { return process_ != nullptr && process_->alive(); }
   /// Waits for its hello; false when stopped. Throws RuntimeError with the worker's own words when it cannot start.

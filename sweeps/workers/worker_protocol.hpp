@@ -7,8 +7,10 @@
 /// What parent and worker say to each other, one JSON object a line.
 ///
 ///   worker → parent   {"type": "hello", "protocol": 1, "device": …, "driver": …, "clock": …}     once, when it can
-///   render parent → worker   {"type": "measure", "point": {…}, "references": FOLDER}                    a point, in
-///   full
+///   render parent → worker   {"type": "measure", "point": {…}, "references": FOLDER, "picture": FILE}   a point, in
+///   full; with
+///                                                                                                `picture`, kept
+///                     {"type": "reference", "point": {…}, "references": FOLDER}                its reference alone
 ///                     {"type": "time", "point": {…}}                                             its frame time alone
 ///   worker → parent   {"type": "progress", "phase": "reference", "share": 0.4}                   any number
 ///                     {"type": "done", "id": …, "row": {…}, "frame_ms_samples": […]}

@@ -48,9 +48,9 @@ void main() {
   Input q = inputs[i];
   Ray ray = Ray(q.origin.xyz, q.direction.xyz, q.uv, vec2(1.0));
   vec2 range = vec2(q.origin.w, q.direction.w);
-  int taken = 0, unused = 0;
+  float taken = 0.0, unused = 0.0;
   float linear = linear_crossing(0, ray, range, q.side, 1e-6, int(q.steps), int(q.refinements), taken);
   float max_mip = max_mip_crossing(0, ray, vec2(1.0), range, q.side, 4096, unused);
   float cone = cone_crossing(0, ray, vec2(1.0), kRange, range, 1e-6, 256, 8, unused);
-  outputs[i] = Output(linear, float(taken), max_mip, cone);
+  outputs[i] = Output(linear, taken, max_mip, cone);
 }

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/technique.hpp"
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace pellucid {

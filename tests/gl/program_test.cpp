@@ -9,7 +9,7 @@
 
 #include <glm/glm.hpp>
 
-#include "gl/resources.hpp"
+#include "gl/resources/resources.hpp"
 #include "tests/gl/gl_fixture.hpp"
 
 namespace pellucid::gl::test {

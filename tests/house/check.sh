@@ -110,6 +110,18 @@ check_rooms() {
 }
 
 # A file is short enough, or tests/house/long_files.txt says why it is not.
+# A paper is data: no code above its folder knows its name.
+check_papers() {
+  local folder paper
+  for folder in $(listed find algorithms -mindepth 2 -maxdepth 2 -name paper.toml -printf '%h\n'); do
+    paper="${folder#algorithms/}"
+    while IFS= read -r line; do
+      [[ -z $line ]] || complain "$line: the paper ${paper} is named outside of its folder"
+    done < <(grep -rn --include='*.cpp' --include='*.hpp' --include='*.glsl' --include='CMakeLists.txt' -e "$paper" sweeps plots sandbox |
+      cut -d: -f1,2 || true)
+  done
+}
+
 check_length() {
   local file lines listed counted
   listed=" $(sed -e 's/#.*//' -e '/^ *$/d' tests/house/long_files.txt | tr -s ' \n' '  ') "
@@ -199,6 +211,7 @@ check_words() {
 case "${1:-}" in
   includes) check_includes ;;
   rooms) check_rooms ;;
+  papers) check_papers ;;
   length) check_length ;;
   format) check_format ;;
   presets) check_presets ;;

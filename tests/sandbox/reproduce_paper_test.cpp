@@ -44,6 +44,11 @@ label = "points along a ray"
 doc = "M·N"
 expression = "hulls * samples"
 
+[tables.hulls]
+title = "Error of so many hulls"
+columns = { hulls = [1, 2, 4] }
+rows = [{ show = "name", label = "hulls" }, { quantity = "points_along_ray", paper = [2, "none", "7..9"] }, { quantity = "flip_mean" }]
+
 [[figures]]
 name = "error"
 title = "Error over points"
@@ -125,6 +130,20 @@ TEST_F(ReproducePaper, AFileOfOnesOwnFromItsSweepToItsPage) {
     EXPECT_EQ(std::stod(y), row.at("flip_mean").get<double>());
   }
 
+  // So are the table's; the preview has no row of two hulls.
+  ASSERT_EQ(done.at("tables").size(), 1U);
+  const json table = json::parse(read_file(out / "mine" / "tables" / "hulls.json"));
+  ASSERT_EQ(table.size(), 3U);
+  EXPECT_EQ(table[0].at("paper"), 2.0);
+  EXPECT_EQ(table[0].at("ours"), 2.0);
+  EXPECT_EQ(table[1].at("outcome"), "missing");
+  EXPECT_EQ(table[2].at("paper_high"), 9.0);
+  EXPECT_EQ(table[2].at("ours"), 8.0);
+  for (const json& row : json::parse(printed.out)) {
+    const json& record = table[row.at("hulls") == 1 ? 0 : 2];
+    EXPECT_EQ(record.at("flip_mean"), row.at("flip_mean"));
+  }
+
   ASSERT_EQ(done.at("pictures").size(), 2U);
   for (const json& picture : done.at("pictures")) {
     EXPECT_FALSE(picture.at("kept").get<bool>());
@@ -132,9 +151,10 @@ TEST_F(ReproducePaper, AFileOfOnesOwnFromItsSweepToItsPage) {
     EXPECT_TRUE(std::filesystem::exists(out / picture.at("exr").get<std::string>()));
   }
   const std::string page = read_file(out / "index.html");
-  for (const char* words : {"Hulls of mine", "Error over points", "figures/error.csv", "A box of fog", "(a)",
-                            "As few points as there can be.", "hulls 1, samples 1", "32×24 pixels", "a corner",
-                            "the same forward pass, shadow maps included", "The reference is traced"})
+  for (const char* words :
+       {"Hulls of mine", "Error of so many hulls", "7 to 9", "Error over points", "figures/error.csv", "A box of fog",
+        "(a)", "As few points as there can be.", "hulls 1, samples 1", "32×24 pixels", "a corner",
+        "the same forward pass, shadow maps included", "The reference is traced"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
 
   for (const json& picture : reproduce().at("pictures"))

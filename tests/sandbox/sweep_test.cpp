@@ -126,6 +126,36 @@ TEST_F(Sweep, ADryRunMeasuresNothing) {
   EXPECT_FALSE(std::filesystem::exists(store));
 }
 
+TEST_F(Sweep, ADryRunSaysWhatIsLeftOutAndHowLongItMayTake) {
+  const std::string text = small_spec(scene, "[1, 2, 4, 8]");
+  const std::size_t at = text.find("[run.axes]");
+  write_file(spec, text.substr(0, at) + "constraints = [\"hulls < 8\"]\n" + text.substr(at));
+  const Outcome before = sweep({"--dry-run"});
+  ASSERT_TRUE(succeeded(before));
+  EXPECT_NE(before.out.find("left out of block hulls: 1 point, by the constraint 'hulls < 8'"), std::string::npos)
+      << before.out;
+  EXPECT_NE(before.out.find("4 distinct points, 4 to measure; at most 8 s of timing"), std::string::npos) << before.out;
+  EXPECT_EQ(before.out.find("pellucid render"), std::string::npos) << before.out;
+  ASSERT_TRUE(succeeded(sweep({"--limit", "1"})));
+  const Outcome after = sweep({"--dry-run", "--list"});
+  EXPECT_NE(after.out.find("4 distinct points, 3 to measure; about "), std::string::npos) << after.out;
+  EXPECT_NE(after.out.find("# stored"), std::string::npos) << after.out;
+  EXPECT_TRUE(refused(sweep({"--list"}), 2, {"--list", "--dry-run"}));
+}
+
+TEST_F(Sweep, KeepsThePictureOfEachPoint) {
+  std::string text = small_spec(scene, "[1]");
+  write_file(spec, "keep = \"png\"\n" + text.insert(text.find("baseline = true"), "keep = \"exr\"\n"));
+  ASSERT_TRUE(succeeded(sweep()));
+  for (const json& row : rows()) {
+    const std::string id = row.at("point").get<std::string>();
+    const bool exr = row.at("block") == "slices";
+    const std::filesystem::path kept = store + ".pictures/" + id + (exr ? ".exr" : ".png");
+    EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
+    EXPECT_TRUE(succeeded(pellucid({"compare", kept.string(), kept.string()}))) << kept;
+  }
+}
+
 TEST_F(Sweep, StatusCountsWhatIsDone) {
   ASSERT_EQ(sweep({"--limit", "3"}).signal, 0);
   auto counted = [&](const char* what) {

@@ -35,14 +35,27 @@ static_assert(well_formed<Technique>());
 
 /// What the fake worker does with the point (fake_worker.cpp).
 struct Faulty {
-  enum class Does { good, fail, crash, abort, hang, nan, garbage, truncate, leave, unconverged } does = Does::good;
+  enum class Does {
+    good,
+    fail,
+    crash,
+    abort,
+    hang,
+    nan,
+    garbage,
+    truncate,
+    leave,
+    unconverged,
+    stop,
+    killed
+  } does = Does::good;
   int n = 0;
   int sleep_ms = 0;
   int frames = 30;
   static constexpr void parameters(auto& self, auto&& visit) {
     visit(PARAM(does), {.cite = "test",
                         .doc = "how the worker ends",
-                        .choices = "good|fail|crash|abort|hang|nan|garbage|truncate|leave|unconverged"});
+                        .choices = "good|fail|crash|abort|hang|nan|garbage|truncate|leave|unconverged|stop|killed"});
     visit(PARAM(n), {.range = {0, 100000}, .cite = "test", .doc = "tells points apart"});
     visit(PARAM(sleep_ms), {.range = {0, 10000}, .cite = "test", .doc = "how long it takes"});
     visit(PARAM(frames), {.range = {1, 1000000}, .cite = "test", .doc = "samples it sends"});

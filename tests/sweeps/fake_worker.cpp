@@ -56,6 +56,8 @@ int fake_worker(const std::string& log, const std::string& device) {
       ::raise(SIGABRT);
     }
     if (does == "leave") return 7;
+    if (does == "stop") ::raise(SIGSTOP);
+    if (does == "killed") ::raise(SIGKILL);
     while (does == "hang")
       sleep_ms(1000);
     if (does == "garbage") {
@@ -129,6 +131,7 @@ int run_role(const std::vector<std::string>& arguments) {
     sleep_ms(5000);
     return 0;
   }
+  if (role == "writer") return run_writer(arguments.at(1), std::stoi(arguments.at(2)));
   if (role == "full-disk-sweep") {
     // The nearest thing to a full disk that needs no disk: no file may grow beyond this.
     ::signal(SIGXFSZ, SIG_IGN);

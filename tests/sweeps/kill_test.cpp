@@ -83,37 +83,49 @@ std::vector<json> timeless(std::vector<json> rows) {
   return rows;
 }
 
-// Killed at ten random moments: a few within the start, the others while a point is in work or its row is being
-// written.
+/// The worker of a sweep; 0 when it has none at the moment.
+pid_t worker_of(pid_t sweep) {
+  std::ifstream file("/proc/" + std::to_string(sweep) + "/task/" + std::to_string(sweep) + "/children");
+  pid_t worker = 0;
+  file >> worker;
+  return worker;
+}
+
+// Killed at twenty random moments, the parent, its worker or both: a few within the start, the others while a point is
+// in work or its row is being written.
 TEST(KilledSweep, LeavesTheRowsOfOneThatWasNot) {
   const TemporaryFolder folder;
-  const FakeSweep killed{folder / "killed.db", folder / "killed.log", 60, 4, 50};
+  const FakeSweep killed{folder / "killed.db", folder / "killed.log", 120, 4, 50};
   std::mt19937 random(2007);
   std::vector<json> before;
-  for (std::size_t kill = 1; kill <= 10; ++kill) {
+  for (std::size_t kill = 1; kill <= 20; ++kill) {
     const std::size_t moment = killed.asked() + random() % 5;       // after so many points in all …
     const auto later = std::chrono::microseconds(random() % 8000);  // … and so much later
     const pid_t pid = start(killed.command());
     for (int ms = 0; ms < 60'000 && killed.asked() < moment; ++ms)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(later);
+    if (const pid_t worker = worker_of(pid); worker > 0 && kill % 3 != 0) {
+      ::kill(worker, SIGKILL);  // it may just have ended by itself
+      if (kill % 3 == 1) std::this_thread::sleep_for(std::chrono::milliseconds(random() % 30));
+    }
     ASSERT_EQ(::kill(pid, SIGKILL), 0);
     ASSERT_TRUE(WIFSIGNALED(wait_for(pid))) << "it was over before it could be killed";
     const std::vector<json> stored = killed.rows();
     ASSERT_GE(stored.size(), before.size()) << "a row was lost";
     for (const json& row : before)
       EXPECT_NE(std::find(stored.begin(), stored.end(), row), stored.end()) << "a row has changed";
-    EXPECT_LE(killed.asked(), stored.size() + kill) << "more than the point in work was done again";
+    EXPECT_LE(killed.asked(), stored.size() + 2 * kill) << "more than the point in work was done again";
     before = stored;
   }
   EXPECT_GT(before.size(), 5U);
-  EXPECT_LT(before.size(), 60U);
+  EXPECT_LT(before.size(), 120U);
   ASSERT_TRUE(done(wait_for(start(killed.command()))));
 
-  const FakeSweep whole{folder / "whole.db", folder / "whole.log", 60, 4, 50};
+  const FakeSweep whole{folder / "whole.db", folder / "whole.log", 120, 4, 50};
   ASSERT_TRUE(done(wait_for(start(whole.command()))));
   std::vector<json> expected = timeless(whole.rows()), rows = timeless(killed.rows());
-  ASSERT_EQ(expected.size(), 60U);
+  ASSERT_EQ(expected.size(), 120U);
   ASSERT_EQ(rows.size(), expected.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
     EXPECT_EQ(rows[i], expected[i]) << i;

@@ -1,10 +1,12 @@
 #include "sweeps/workers/run.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <random>
 #include <set>
 #include <string>
 #include <thread>
@@ -17,6 +19,7 @@
 #include <unistd.h>
 
 #include "gl/error.hpp"
+#include "sweeps/store/merge.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/worker_process.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
@@ -81,6 +84,7 @@ TEST_F(Sweep, RecordsWhereARowComesFrom) {
     EXPECT_EQ(row.at("width"), 8);
     EXPECT_EQ(row.at("status"), "ok");
     EXPECT_EQ(row.at("device"), "a device");
+    EXPECT_FALSE(row.at("host").get<std::string>().empty());
     EXPECT_EQ(row.at("driver"), "1.0");
     EXPECT_EQ(row.at("clock"), "finish");
     EXPECT_EQ(row.at("argv"), "pellucid sweep run 'a b.toml'");
@@ -127,6 +131,22 @@ TEST_F(Sweep, GoesOnAfterEveryKindOfFailure) {
   EXPECT_EQ(failure("leave"), "the worker ended with status 7");
 }
 
+TEST_F(Sweep, AStoppedWorkerCostsItsPoint) {
+  const SweepSummary summary = run(spec("timeout_s = 1\n") + "[run.axes]\ndoes = ['stop', 'good']\n");
+  EXPECT_EQ(summary.measured, 1U);
+  EXPECT_EQ(summary.failed, 1U);
+  EXPECT_EQ(read_rows(store)[0].at("failure"), "the worker took longer than timeout_s = 1");
+}
+
+// Somebody, or the kernel for want of memory: the point is tried once more before it counts as failed.
+TEST_F(Sweep, APointWhoseWorkerIsKilledIsTriedAgain) {
+  const SweepSummary summary = run(spec("") + "[run.axes]\ndoes = ['killed', 'good']\n");
+  EXPECT_EQ(summary.measured, 1U);
+  EXPECT_EQ(summary.failed, 1U);
+  EXPECT_EQ(requests().size(), 3U);
+  EXPECT_EQ(read_rows(store)[0].at("failure").get<std::string>().substr(0, 33), "the worker was killed by signal 9");
+}
+
 TEST_F(Sweep, AFinishedOneDoesNothing) {
   const std::string text = spec("") + "[run.axes]\nn = [1, 2, 3]\ndoes = ['good', 'fail']\n";
   run(text);
@@ -158,6 +178,15 @@ TEST_F(Sweep, ALimitLeavesTheRest) {
   EXPECT_EQ(std::set<std::string>(asked.begin(), asked.end()).size(), 5U);
 }
 
+TEST_F(Sweep, GivesUpAfterSoManyFailures) {
+  options.fail_after = 2;
+  const SweepSummary summary = run(spec("") + "[run.axes]\nn = [1, 2, 3, 4, 5, 6, 7, 8]\n[run.fixed]\ndoes = 'fail'\n");
+  EXPECT_TRUE(summary.gave_up);
+  EXPECT_EQ(summary.failed, 2U);
+  EXPECT_EQ(summary.left, 6U);
+  EXPECT_EQ(requests().size(), 2U);
+}
+
 TEST_F(Sweep, MeasuresTheBaselineFirstBetweenAndLast) {
   const SweepSummary summary = run(spec("") + "baseline = true\n[run.axes]\nn = { from = 1, to = 20, steps = 20 }\n");
   std::string kinds;
@@ -177,12 +206,143 @@ TEST_F(Sweep, ABrokenBaselineCostsOnlyTheDrift) {
 }
 
 TEST_F(Sweep, NeverPoolsDevices) {
-  run(spec("") + "[run.axes]\nn = [1]\n");
+  const std::string text = spec("") + "[run.axes]\nn = [1, 2]\n";
+  run(text);
   options.worker = self({"fake-worker", log.string(), "another device"});
-  const std::string message = input_error([&] { run(spec("") + "[run.axes]\nn = [1, 2]\n"); });
-  EXPECT_NE(message.find("holds measurements of a device (1.0), and this worker renders on another device (1.0)"),
+  EXPECT_EQ(run(text).reused, 2U) << "nothing is missing, so no worker was asked";
+  const SweepSummary more = run(spec("") + "[run.axes]\nn = [1, 2, 3]\n");
+  EXPECT_EQ(more.measured, 3U) << "each point is measured on the other device too";
+  EXPECT_EQ(more.device, "another device, 1.0");
+  EXPECT_EQ(Store(store, Access::read).points().size(), 5U);
+  const std::vector<json> rows = read_rows(store);
+  ASSERT_EQ(rows.size(), 5U);
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const json& row) { return row.at("device") == "a device"; }), 2);
+}
+
+TEST_F(Sweep, SeveralWorkersShareThePoints) {
+  options.devices = {0, 1, 3};
+  const SweepSummary summary =
+      run(spec("") + "baseline = true\n[run.axes]\nn = { from = 1, to = 60, steps = 60 }\n[run.fixed]\nsleep_ms = 5\n");
+  EXPECT_EQ(summary.measured, 60U);
+  EXPECT_EQ(summary.left, 0U);
+  std::multiset<std::string> measured;
+  for (const std::string& request : requests()) {
+    if (request[0] == 'm') measured.insert(request);
+  }
+  EXPECT_EQ(measured.size(), 60U);
+  EXPECT_EQ(std::set<std::string>(measured.begin(), measured.end()).size(), 60U) << "none twice";
+  EXPECT_EQ(read_rows(store).size(), 60U);
+  const std::vector<RunRecord> runs = Store(store, Access::read).runs();
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0].points, 60U);
+  EXPECT_GT(runs[0].measuring_s, 0);
+  EXPECT_LE(runs[0].measuring_s, runs[0].wall_s);
+}
+
+TEST_F(Sweep, SeveralWorkersStopAtAnError) {
+  options.devices = {0, 1};
+  options.fail_after = 3;
+  const SweepSummary summary =
+      run(spec("") + "[run.axes]\nn = { from = 1, to = 60, steps = 60 }\n[run.fixed]\ndoes = 'fail'\nsleep_ms = 5\n");
+  EXPECT_TRUE(summary.gave_up);
+  EXPECT_GE(summary.failed, 3U);
+  EXPECT_LE(summary.failed, 4U);
+}
+
+TEST_F(Sweep, ShardsDivideThePointsAndMergeToTheWhole) {
+  const std::string text = spec("") + "[run.axes]\nn = { from = 1, to = 50, steps = 50 }\n";
+  run(text);
+  const auto timeless = [](const std::filesystem::path& path) {
+    std::map<std::string, json> rows;
+    for (json row : read_rows(path, true)) {
+      for (const char* field : {"started_utc", "done_unix_s", "wall_s"})
+        row.erase(field);
+      rows[row.at("point")] = row;
+    }
+    return rows;
+  };
+  const auto whole = timeless(store);
+  ASSERT_EQ(whole.size(), 50U);
+  std::mt19937 random(5);
+  for (const std::size_t count : {1U, 3U, 16U}) {
+    std::vector<std::filesystem::path> parts;
+    std::size_t planned = 0;
+    for (std::size_t i = 1; i <= count; ++i) {
+      store = folder / ("part" + std::to_string(count) + "." + std::to_string(i) + ".db");
+      options.shard = {i, count};
+      planned += run(text).measured;
+      parts.push_back(store);
+    }
+    EXPECT_EQ(planned, 50U);
+    for (const char* merged : {"a.db", "b.db"}) {
+      std::shuffle(parts.begin(), parts.end(), random);
+      const std::filesystem::path path = folder / (std::to_string(count) + merged);
+      const MergeSummary summary = merge_stores(path, parts);
+      EXPECT_EQ(summary.rows, 50U);
+      EXPECT_EQ(summary.added, 50U);
+      EXPECT_EQ(timeless(path), whole) << count;
+      EXPECT_EQ(merge_stores(path, parts).duplicates, 50U) << "again changes nothing";
+      EXPECT_EQ(timeless(path), whole) << count;
+    }
+  }
+}
+
+TEST_F(Sweep, AMergeTellsConflictsFromRepeats) {
+  const std::string text = spec("") + "[run.axes]\nn = [1, 2, 3]\n";
+  const std::filesystem::path a = store = folder / "a.db";
+  run(text);
+  const std::filesystem::path b = store = folder / "b.db";
+  run(text);
+  const MergeSummary repeats = merge_stores(folder / "ab.db", {a, b});
+  EXPECT_EQ(repeats.rows, 3U);
+  EXPECT_EQ(repeats.repeats, 3U);
+  EXPECT_TRUE(repeats.conflicts.empty());
+  merge_stores(folder / "ba.db", {b, a});
+  EXPECT_EQ(read_rows(folder / "ab.db", true), read_rows(folder / "ba.db", true)) << "in any order";
+
+  const std::string id = read_rows(b)[0].at("point");
+  {
+    Store changed(b, Access::write);
+    json row = read_rows(b)[0];
+    for (const char* field : {"point", "sweep", "block", "baseline_drift"})
+      row.erase(field);
+    row["rmse"] = 0.9;
+    changed.put_row(id, row, {});
+  }
+  const std::string message = input_error([&] { merge_stores(folder / "c.db", {a, b}); });
+  EXPECT_NE(message.find("1 point was measured twice with different results"), std::string::npos) << message;
+  EXPECT_NE(message.find("rmse: "), std::string::npos) << message;
+  EXPECT_FALSE(std::filesystem::exists(folder / "c.db")) << "nothing is left of a merge that failed";
+  EXPECT_EQ(merge_stores(folder / "c.db", {a, b}, Prefer::newest).conflicts.size(), 1U);
+  EXPECT_EQ(read_rows(folder / "c.db").size(), 3U);
+
+  store = folder / "d.db";
+  run(spec("") + "[run.axes]\nn = [1, 2]\n");
+  EXPECT_NE(input_error([&] {
+              merge_stores(folder / "e.db", {a, store});
+            }).find("different plans of the sweep s"),
             std::string::npos);
-  EXPECT_EQ(Store(store, Access::read).points().size(), 1U);
+}
+
+TEST(Shard, IsReadFromText) {
+  EXPECT_EQ(parse_shard("2/16").index, 2U);
+  EXPECT_EQ(parse_shard("2/16").count, 16U);
+  for (const char* bad : {"0/3", "4/3", "1/0", "1", "a/b", "1/2/3", "-1/3", ""})
+    EXPECT_NE(input_error([&] { parse_shard(bad); }).find("is not i/N"), std::string::npos) << bad;
+}
+
+TEST_F(Sweep, AWarningEndsBetweenTwoPoints) {
+  const std::string text = spec("") + "[run.axes]\nn = { from = 1, to = 40, steps = 40 }\n[run.fixed]\nsleep_ms = 30\n";
+  std::thread warner([&] {
+    while (requests().size() < 4)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(::getpid(), SIGUSR1);
+  });
+  const SweepSummary first = run(text);
+  warner.join();
+  EXPECT_TRUE(first.interrupted);
+  EXPECT_GT(first.left, 0U);
+  EXPECT_EQ(requests().size(), first.measured) << "the point in work was ended, not thrown away";
 }
 
 TEST_F(Sweep, SaysWhyNoWorkerStarts) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -165,6 +166,87 @@ TEST(StoppingRule, ConvergingAtTheCapIsConverging) {
   l.max_samples = 30;
   StoppingRule rule(l);
   EXPECT_EQ(feed(rule, [] { return 1.0; }), Verdict::converged);
+}
+
+// One sample has no spread that could be judged, whatever its limits say.
+TEST(StoppingRule, OneSampleNeverConverges) {
+  TimingLimits l = limits();
+  l.min_samples = 1;
+  l.max_samples = 1;
+  StoppingRule one(l);
+  EXPECT_EQ(feed(one, [] { return 1.0; }), Verdict::unconverged);
+  EXPECT_EQ(one.samples_ms().size(), 1U);
+  l.max_samples = 100;
+  StoppingRule more(l);
+  EXPECT_EQ(feed(more, [] { return 1.0; }), Verdict::converged);
+  EXPECT_GE(more.samples_ms().size(), 2U);
+}
+
+/// The rule as its definition reads, sorting everything at each check.
+Verdict slow_rule(const std::vector<double>& series, const TimingLimits& limits, std::size_t& used) {
+  std::size_t next_check = 0;
+  std::vector<double> samples;
+  for (used = 1; used <= series.size(); ++used) {
+    samples.push_back(series[used - 1]);
+    const bool capped = used >= static_cast<std::size_t>(limits.max_samples);
+    if (used >= static_cast<std::size_t>(limits.min_samples) && (used >= next_check || capped)) {
+      const TimingSummary summary = summarise(samples);
+      const double half_width = (summary.ci95_ms.high - summary.ci95_ms.low) / 2;
+      if (used > 1 && half_width <= limits.relative_ci * summary.median_ms) return Verdict::converged;
+      next_check = used + std::max<std::size_t>(5, used / 10);
+    }
+    if (capped) return Verdict::unconverged;
+  }
+  return Verdict::more;
+}
+
+TEST(StoppingRule, StopsWhereTheDefinitionDoes) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0, 0.05 * (seed % 8));
+    std::vector<double> series(3000);
+    for (double& ms : series)
+      ms = 10 + std::abs(noise(random)) + (random() % 10 == 0 ? 1.0 : 0.0);
+    TimingLimits l = limits();
+    l.min_samples = 1 + static_cast<int>(seed);
+    l.max_samples = 3000;
+    std::size_t used = 0;
+    const Verdict expected = slow_rule(series, l, used);
+    StoppingRule rule(l);
+    std::size_t i = 0;
+    EXPECT_EQ(feed(rule, [&] { return series[i++]; }), expected) << seed;
+    EXPECT_EQ(rule.samples_ms().size(), used) << seed;
+  }
+}
+
+// The ranks do not depend on what was asked before, and are those of a search over all n.
+TEST(MedianIntervalRanks, AreTheSameHoweverTheyAreReached) {
+  MedianIntervalRanks growing;
+  for (std::size_t n = 1; n < 400; ++n) {
+    const auto a = growing.at(n);
+    const auto b = MedianIntervalRanks().at(n);
+    EXPECT_EQ(a.low, b.low);
+    EXPECT_EQ(a.high, b.high);
+    EXPECT_LE(a.low, (n + 1) / 2);
+    EXPECT_GE(a.high, n / 2 + 1);
+  }
+}
+
+TEST(StoppingRule, AHundredThousandSamplesCostLittle) {
+  std::mt19937_64 random(9);
+  TimingLimits l = limits();
+  l.max_samples = 100'000;
+  l.relative_ci = 1e-9;
+  std::vector<double> series(100'000);
+  for (double& ms : series)
+    ms = 10 + static_cast<double>(random() % 1000) / 1000;
+  StoppingRule rule(l);
+  std::size_t i = 0;
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(feed(rule, [&] { return series[i++]; }), Verdict::unconverged);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  EXPECT_LT(seconds, 2.0);  // 0.1 s measured, 0.8 s when each check sorted all; a sanitizer's build takes longer
+  RecordProperty("seconds", std::to_string(seconds));
 }
 
 TEST(WarmUp, WaitsForTheRollingMedian) {

@@ -1,6 +1,7 @@
 #include "sweeps/store/store.hpp"
 
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -8,10 +9,13 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "gl/error.hpp"
+#include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/sqlite.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
@@ -175,7 +179,7 @@ TEST(Store, RefusesWhatIsNoStore) {
   { const Store store(folder / "newer.db", Access::write); }
   Database(folder / "newer.db", Database::Mode::create).run("PRAGMA user_version = 7");
   EXPECT_EQ(error("newer.db", Access::write),
-            "store 'PATH' has schema version 7, and this program reads version 1; use the program "
+            "store 'PATH' has schema version 7, and this program reads versions 1 to 2; use the program "
             "that made it, or another store");
 }
 
@@ -217,6 +221,167 @@ TEST(Store, HasOneWriterAndAnyReaders) {
   }
   EXPECT_NO_THROW(Store(folder / "s.db", Access::write));
   EXPECT_FALSE(std::filesystem::exists(folder / "s.db-lock"));
+}
+
+/// A store as version 1 had it, of one row.
+void write_version_1(const std::filesystem::path& path, const Example& e) {
+  fill(path, e);
+  Database db(path, Database::Mode::create);
+  db.run(
+      "DROP VIEW results; DROP TABLE columns; DROP TABLE runs;"
+      "CREATE TABLE points_1(id TEXT PRIMARY KEY, failed INTEGER NOT NULL, done_unix_s REAL NOT NULL, row TEXT NOT "
+      "NULL, frame_ms BLOB NOT NULL);"
+      "INSERT INTO points_1 SELECT id, failed, done_unix_s, row, frame_ms FROM points; DROP TABLE points;"
+      "ALTER TABLE points_1 RENAME TO points;"
+      "ALTER TABLE baselines DROP COLUMN device; ALTER TABLE baselines DROP COLUMN driver;"
+      "ALTER TABLE baselines DROP COLUMN host;"
+      "INSERT INTO baselines(sweep, point, unix_s, frame_ms_median, frame_ms) VALUES('s', 'x', 100, 10, x'');"
+      "INSERT INTO baselines(sweep, point, unix_s, frame_ms_median, frame_ms) VALUES('s', 'x', 200, 12, x'');"
+      "PRAGMA user_version = 1;");
+}
+
+TEST(Store, ReadsAStoreOfVersion1AndBringsItUpToDateWhenItWrites) {
+  const TemporaryFolder folder;
+  const Example e;
+  const std::filesystem::path path = folder / "old.db";
+  write_version_1(path, e);
+  const std::vector<json> before = read_rows(path, true);
+  ASSERT_EQ(before.size(), 2U);
+  EXPECT_EQ(before[0].at("frame_ms_samples").size(), 3U);
+  EXPECT_DOUBLE_EQ(before[0].at("baseline_drift").get<double>(), 0.1);
+  EXPECT_EQ(Store(path, Access::read).points().at(0).device, "d");
+  EXPECT_EQ(Store(path, Access::read).status().at(0).done, 1U);
+  EXPECT_EQ(Database(path, Database::Mode::read).integer("PRAGMA user_version"), 1) << "reading changes nothing";
+  { const Store store(path, Access::write); }
+  const Database db(path, Database::Mode::read);
+  EXPECT_EQ(db.integer("PRAGMA user_version"), 2);
+  EXPECT_EQ(db.integer("SELECT hulls FROM results"), 2);
+  EXPECT_EQ(read_rows(path, true), before);
+}
+
+TEST(Store, KeepsDevicesApart) {
+  const TemporaryFolder folder;
+  const Example e;
+  const std::filesystem::path path = folder / "s.db";
+  fill(path, e);
+  json other = row_of("ok", 150);
+  other["device"] = "another";
+  other["frame_ms_median"] = 7;
+  {
+    Store store(path, Access::write);
+    store.put_row(e.plan.points[1].id, other, std::vector<double>{7});
+    store.put_baseline("s", {"x", 100, 10, {10}, "d", "v", ""});
+    store.put_baseline("s", {"x", 200, 20, {20}, "another", "v", ""});
+  }
+  const std::vector<json> rows = read_rows(path);
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].at("device"), "another");
+  EXPECT_EQ(rows[0].at("frame_ms_median"), 7);
+  EXPECT_EQ(rows[0].at("baseline_drift"), 0.0) << "of its own device's baseline";
+  EXPECT_EQ(rows[1].at("device"), "d");
+  const std::vector<BlockStatus> status = Store(path, Access::read).status();
+  ASSERT_EQ(status.size(), 4U);
+  EXPECT_EQ(status[0].device, "another, v");
+  EXPECT_EQ(status[0].done, 1U);
+  EXPECT_EQ(status[0].planned, 2U);
+  EXPECT_EQ(status[2].device, "d, v");
+}
+
+TEST(Store, AFailureBeforeAnyDeviceCountsUntilARowComes) {
+  const TemporaryFolder folder;
+  const Example e;
+  Store store(folder / "s.db", Access::write);
+  store.put_plan(e.spec, e.plan);
+  const std::string id = e.plan.points[0].id;
+  store.put_row(id, {{"status", "failed"}, {"device", ""}, {"driver", ""}}, {});
+  ASSERT_EQ(store.points().size(), 1U);
+  EXPECT_TRUE(store.points()[0].failed);
+  store.put_row(id, row_of("ok", 1), {});
+  ASSERT_EQ(store.points().size(), 1U);
+  EXPECT_FALSE(store.points()[0].failed);
+}
+
+TEST(Store, OffersItsRowsToSql) {
+  const TemporaryFolder folder;
+  const Example e;
+  fill(folder / "s.db", e);
+  const Database db(folder / "s.db", Database::Mode::read);
+  EXPECT_EQ(db.integer("SELECT count(*) FROM results"), 2);
+  EXPECT_EQ(db.integer("SELECT count(*) FROM results WHERE hulls = 2 AND timing = 'converged'"), 2);
+  Statement types(
+      db, "SELECT typeof(frame_ms_median), typeof(hulls), typeof(device), typeof(\"pass_ms.back\") FROM results");
+  ASSERT_TRUE(types.step());
+  EXPECT_EQ(types.text(0) + " " + types.text(1) + " " + types.text(2) + " " + types.text(3), "real integer text real");
+  Statement column(db, "SELECT type, kind, description FROM columns WHERE name = 'hulls'");
+  ASSERT_TRUE(column.step());
+  EXPECT_EQ(column.text(0) + " " + column.text(1) + " " + column.text(2), "INTEGER parameter a uniform");
+  // What was a whole number in the first row may be a real one in the next.
+  {
+    Store store(folder / "s.db", Access::write);
+    json row = row_of("ok", 3);
+    row["share"] = 1;
+    store.put_row(e.plan.points[0].id, row, {});
+    row["share"] = 0.5;
+    store.put_row(e.plan.points[2].id, row, {});
+  }
+  EXPECT_EQ(Database(folder / "s.db", Database::Mode::read)
+                .integer("SELECT count(*) FROM results WHERE typeof(share) = 'real'"),
+            2);
+}
+
+TEST(Store, KeepsSamplesLittleEndian) {
+  const TemporaryFolder folder;
+  const Example e;
+  fill(folder / "s.db", e);
+  const Database db(folder / "s.db", Database::Mode::read);
+  Statement statement(db, "SELECT hex(frame_ms) FROM points");
+  ASSERT_TRUE(statement.step());
+  EXPECT_EQ(statement.text(0).substr(0, 16), "9A9999999999B93F");  // 0.1, the least significant byte first
+}
+
+TEST(Store, OnASharedFileSystemHasARollbackJournalAndOneUser) {
+  const TemporaryFolder folder;
+  const Example e;
+  ::setenv("PELLUCID_NETWORK_STORES", "1", 1);
+  {
+    Store store(folder / "s.db", Access::write);
+    store.put_plan(e.spec, e.plan);
+    store.put_row(e.plan.points[1].id, row_of("ok", 150), {});
+    EXPECT_FALSE(std::filesystem::exists(folder / "s.db-wal"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "s.db-shm"));
+  }
+  EXPECT_EQ(read_rows(folder / "s.db").size(), 2U);
+  ::setenv("PELLUCID_NETWORK_STORES", "yes", 1);
+  EXPECT_NE(input_error([&] { Store(folder / "s.db", Access::write); }).find("neither 0 nor 1"), std::string::npos);
+  ::unsetenv("PELLUCID_NETWORK_STORES");
+}
+
+TEST(Store, ADeadOwnersLockIsTakenOverAndALivingOnesIsNot) {
+  const TemporaryFolder folder;
+  const Example e;
+  fill(folder / "s.db", e);
+  const auto lock = [&](const std::string& owner) { write_file(folder / "s.db-lock", owner); };
+  lock(host_name() + " 999999999 12345\n");
+  EXPECT_NO_THROW(Store(folder / "s.db", Access::write));
+  lock(fmt::format("{} {} 1\n", host_name(), ::getpid()));  // an earlier process of this number
+  EXPECT_NO_THROW(Store(folder / "s.db", Access::write));
+  lock("elsewhere 12 34\n");
+  try {
+    const Store store(folder / "s.db", Access::write);
+    ADD_FAILURE() << "another machine's sweep may live";
+  } catch (const RuntimeError& error) {
+    EXPECT_NE(std::string(error.what()).find("process 12 of elsewhere"), std::string::npos) << error.what();
+  }
+  std::filesystem::remove(folder / "s.db-lock");
+}
+
+TEST(Store, NoticesThatItsLockWasTakenAway) {
+  const TemporaryFolder folder;
+  const Example e;
+  Store store(folder / "s.db", Access::write);
+  store.put_plan(e.spec, e.plan);
+  std::filesystem::remove(folder / "s.db-lock");
+  EXPECT_THROW(store.put_row(e.plan.points[1].id, row_of("ok", 150), {}), RuntimeError);
 }
 
 TEST(Store, CannotBeMadeWhereNothingCanBeWritten) {

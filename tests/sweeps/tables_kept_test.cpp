@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "gl/resources/resources.hpp"
 #include "sweeps/tables/tables.hpp"
 
 namespace pellucid::sweeps {
@@ -73,6 +74,24 @@ TEST(KeptTables, NotesSayWhereTheRowsComeFrom) {
        {"Paper: Chan and Wang 2005, Table 2: Pentium 4 3 GHz, GeForce 6800",
         "Ours: Synthetic GPU, 1.0; 512 × 512; timed", "Scene glass_bunny, view ", "Commit 0123456789ab."})
     EXPECT_NE(notes.find(part), std::string::npos) << part << " in\n" << notes;
+}
+
+// A paper that repeats the tables of another under its own name is a file and no more.
+TEST(KeptTables, APaperUnderAnotherNameIsAFileAlone) {
+  for (const PaperPointer& paper : papers()) {
+    const std::string text = "name = \"another\"\n" + find_resource(paper->file.shown).value_or("");
+    const PaperPointer another = parse_paper(text, "another.toml");
+    const std::vector<std::string> names = entry_names(*another, "tables");
+    ASSERT_EQ(names, entry_names(*paper, "tables"));
+    for (const std::string& name : names) {
+      const Table copy = make_table(PaperEntry{another, name}, rows());
+      EXPECT_EQ(copy.info.name, "another." + name);
+      EXPECT_EQ(copy.info.address, "another.toml:" + name);
+      EXPECT_FALSE(copy.sweep.empty()) << name;
+      EXPECT_EQ(format_table(copy, TableFormat::csv),
+                format_table(make_table(PaperEntry{paper, name}, rows()), TableFormat::csv));
+    }
+  }
 }
 
 }  // namespace

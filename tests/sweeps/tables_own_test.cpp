@@ -129,6 +129,8 @@ TEST(OwnTables, MistakesNameTheirPlace) {
             "my.toml:11:36: tables.t.rows[1].set: [row_sets] has no 'errors'");
   EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\" }]\njson = [\"fsp\", \"result\"]"),
             "my.toml:12:9: tables.t.json: 'fsp' is no variable, no row's id and no quantity");
+  EXPECT_EQ(error_of(good + "rows = [{ show = \"name\" }, { quantity = \"fps\" }, { quantity = \"fps\" }]"),
+            "my.toml:11:50: tables.t.rows[2].id: 'fps' names an earlier row; give one of them an id of its own");
   EXPECT_EQ(error_of("columns = [{ hulls = 1 }]\nrow = [{ show = \"name\" }]"),
             "my.toml:8:1: 'rows' is missing in tables.t");
   EXPECT_EQ(error_of("columns = [{ hulls = [] }]\nrows = [{ show = \"name\" }, { quantity = \"fps\" }]"),

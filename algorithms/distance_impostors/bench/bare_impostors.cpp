@@ -27,7 +27,7 @@ struct ShadedObjects {
                 bool bare)
       : lookup(settings) {
     lookup.bare = bare;
-    objects.prepare(request.scene, maps, lookup.bounces > 1, kName);
+    objects.prepare(request.scene, maps, lookup, kName);
     const std::vector<std::size_t> due = objects.due(request.scene, maps);
     objects.draw_maps(request.scene, forward, maps, lookup, due);
     objects.draw_mutual(request.scene, forward, maps, lookup, due);

@@ -55,6 +55,7 @@ struct Relief {
   std::optional<ReliefAir> air;
   std::uint64_t maps_revision = 0;  ///< raised when images or heights changed
 
+  bool scatters() const { return translucent && scattering != glm::vec3(0.0F); }
   float low_m() const { return translucent ? glm::min(solid.low_m, translucent->low_m) : solid.low_m; }
   float high_m() const { return translucent ? glm::max(solid.high_m, translucent->high_m) : solid.high_m; }
 };

@@ -230,7 +230,8 @@ VoxelType type_of(const fs::path& path, const std::string& name) {
       {VoxelKind::unsigned_integer, 64, ",ulonglong,unsigned long long,unsigned long long int,uint64,uint64_t,"},
   };
   for (const Named& type : kTypes) {
-    if (type.names.find("," + lower(name) + ",") != std::string_view::npos) return voxel_type(type.kind, type.bits);
+    if (type.names.find(fmt::format(",{},", lower(name))) != std::string_view::npos)
+      return voxel_type(type.kind, type.bits);
   }
   fail_volume(path, fmt::format("voxels of type '{}' are not read", name));
 }

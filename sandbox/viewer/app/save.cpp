@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sandbox/commands/file_provenance.hpp"
+#include "sandbox/file_provenance.hpp"
 
 namespace pellucid::sandbox {
 

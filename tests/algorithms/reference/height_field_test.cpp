@@ -1,5 +1,5 @@
 // Exact rays against height fields.
-#include "algorithms/reference/height_field.hpp"
+#include "algorithms/reference/relief/height_field.hpp"
 
 #include <cmath>
 #include <numbers>

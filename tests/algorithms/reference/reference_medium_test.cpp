@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "algorithms/reference/medium_path.hpp"
+#include "algorithms/reference/media/medium_path.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/scene/shapes/noise.hpp"

@@ -5,7 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "algorithms/reference/medium_path.hpp"
+#include "algorithms/reference/media/medium_path.hpp"
 #include "algorithms/reference/ray_shadows.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"

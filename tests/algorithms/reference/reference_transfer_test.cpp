@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/reference/cubic.hpp"
-#include "algorithms/reference/medium_path.hpp"
+#include "algorithms/reference/media/cubic.hpp"
+#include "algorithms/reference/media/medium_path.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/scene/shapes/noise.hpp"
 #include "tests/algorithms/reference/reference_scenes.hpp"

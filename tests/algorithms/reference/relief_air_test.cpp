@@ -1,5 +1,5 @@
 // Rays in air whose squared index is linear in height: parabolas.
-#include "algorithms/reference/relief_air.hpp"
+#include "algorithms/reference/relief/relief_air.hpp"
 
 #include <cmath>
 

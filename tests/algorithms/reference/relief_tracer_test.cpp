@@ -1,5 +1,5 @@
 // The optics of a relief on flat layers, whose answers are known.
-#include "algorithms/reference/relief_tracer.hpp"
+#include "algorithms/reference/relief/relief_tracer.hpp"
 
 #include <cmath>
 #include <numbers>

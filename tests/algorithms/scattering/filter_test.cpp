@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/scattering/key_chain.hpp"
+#include "algorithms/key_maps/key_chain.hpp"
 #include "algorithms/scattering/transfer_fit.hpp"
 #include "gl/error.hpp"
 #include "tests/temporary_folder.hpp"

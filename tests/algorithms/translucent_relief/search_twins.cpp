@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/reference/height_field.hpp"
+#include "algorithms/reference/relief/height_field.hpp"
 #include "algorithms/translucent_relief/height_pyramid.hpp"
 #include "algorithms/translucent_relief/search.hpp"
 #include "gl/program.hpp"

@@ -1,0 +1,7 @@
+// A colour that the compiler does not know.
+uniform vec4 value;
+layout(location = 0) out vec4 color;
+
+void main() {
+  color = value;
+}

@@ -1,0 +1,329 @@
+#include "sweeps/spec/spec_axes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "algorithms/parameter_names.hpp"
+#include "algorithms/render_session.hpp"
+#include "gl/error.hpp"
+#include "sweeps/spec/design.hpp"
+#include "sweeps/spec/plan.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+/// What one block draws from: every pair of technique and scene, whose tables must all know an axis.
+struct Owners {
+  const SpecReader& read;
+  const Catalogue& catalogue;
+  const RunBlock& block;
+
+  /// The tables that must hold `name`, and the name they know it by.
+  struct Owner {
+    std::string label;
+    std::vector<ParameterInfo> infos;
+  };
+  std::vector<Owner> owners_of(const std::string& name) const {
+    std::vector<Owner> owners;
+    if (route(name).owner == ParameterOwner::scene) {
+      for (const std::string& scene : block.scenes)
+        owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
+    } else if (const auto common = std::find_if(
+                   common_settings().begin(), common_settings().end(),
+                   [&](const CommonSettings& group) { return name.starts_with(std::string(group.prefix) + "."); });
+               common != common_settings().end()) {
+      owners.push_back({std::string(common->prefix), {common->table->infos().begin(), common->table->infos().end()}});
+    } else {
+      for (const std::string& technique : block.techniques) {
+        owners.push_back({technique, catalogue.technique_parameters(technique)});
+      }
+    }
+    return owners;
+  }
+
+  using Found = std::vector<std::pair<std::string, ParameterInfo>>;
+
+  /// The parameter in every table, each with its owner's name; complains at the key.
+  Found find(const SpecReader::Entry& entry) const {
+    const std::size_t dot = entry.name.find('.');
+    const std::string bare = dot == std::string::npos ? entry.name : entry.name.substr(dot + 1);
+    Found found;
+    for (const Owner& owner : owners_of(entry.name)) {
+      const auto info =
+          std::find_if(owner.infos.begin(), owner.infos.end(), [&](const auto& i) { return i.name == bare; });
+      if (info == owner.infos.end()) read.fail(entry.at, unknown_parameter(bare, owner.label, owner.infos).what());
+      found.emplace_back(owner.label, *info);
+    }
+    return found;
+  }
+
+  Value check(const Found& infos, const toml::node& node, const Value& value) const {
+    Value result = value;
+    for (const auto& [label, info] : infos) {
+      try {
+        result = checked(info, value, label);
+      } catch (const InputError& e) {
+        read.fail(node, e.what());
+      }
+    }
+    return result;
+  }
+};
+
+/// `design = { kind = "sobol", count = 64, seed = 1 }`
+std::optional<Design> read_design(const SpecReader& read, const toml::table& block) {
+  const toml::table* table = read.table(block, "design");
+  if (table == nullptr) return std::nullopt;
+  read.allow(*table, {"kind", "count", "seed"}, "design");
+  Design design;
+  std::string kind = "sobol";
+  if (read.text(*table, "kind", kind)) {
+    read.one_of(*table->get("kind"), kind, {"random", "latin_hypercube", "sobol"}, "kind");
+  }
+  design.kind = kind == "random"            ? DesignKind::random
+                : kind == "latin_hypercube" ? DesignKind::latin_hypercube
+                                            : DesignKind::sobol;
+  if (!read.integer(*table, "count", 1, static_cast<int>(kMaxPoints), design.count)) {
+    read.fail(*table, "design lacks `count`, the number of its points");
+  }
+  int seed = 1;
+  read.integer(*table, "seed", 0, std::numeric_limits<int>::max(), seed);
+  design.seed = static_cast<std::uint64_t>(seed);
+  return design;
+}
+
+/// Reads [run.axes] and tells which axes walk together.
+class AxesReader {
+ public:
+  AxesReader(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block)
+      : read_(read), table_(table), block_(block), owners_{read, catalogue, block}, design_(read_design(read, table)) {
+    std::string combine = "grid";
+    if (!read.text(table, "combine", combine)) return;
+    read.one_of(*table.get("combine"), combine, {"grid", "zip"}, "combine");
+    whole_zip_ = combine == "zip";
+    if (whole_zip_ && design_) {
+      read.fail(*table.get("combine"), "a design spreads its axes itself; zip them with others by `zip`");
+    }
+  }
+
+  void read_all() {
+    read_zips();
+    if (const toml::table* axes = read_.table(table_, "axes")) {
+      for (const SpecReader::Entry& entry : read_.entries(*axes))
+        block_.axes.push_back({entry.name, read_axis(entry), entry.at});
+    }
+    if (whole_zip_ && block_.axes.empty()) read_.fail(block_.at, "combine = \"zip\" needs [run.axes]");
+    if (design_ && drawn_.empty()) {
+      read_.fail(*table_.get("design"),
+                 "the design has no axis; one is a range of [run.axes] without `steps`: { from, to }");
+    }
+    draw();
+    make_walks();
+  }
+
+ private:
+  /// A range that the design draws from.
+  struct Drawn {
+    std::size_t axis;
+    Owners::Found infos;
+    AxisRange range;
+    const SpecReader::Entry entry;
+  };
+
+  /// `zip = [["hulls", "samples"], …]`: names of axes that walk together within the grid.
+  void read_zips() {
+    const toml::node* node = table_.get("zip");
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr || list->empty() || !list->is_homogeneous(toml::node_type::array)) {
+      read_.fail(*node, "zip is a list of lists of axes, for example [[\"hulls\", \"samples\"]]");
+    }
+    if (whole_zip_) read_.fail(*node, "combine = \"zip\" zips all axes already");
+    for (const toml::node& inner : *list) {
+      std::vector<SpecReader::Text> names = read_.texts(inner, "zip", false);
+      if (names.size() < 2) read_.fail(inner, "a zip needs two axes at least");
+      for (const SpecReader::Text& name : names) {
+        for (const std::vector<SpecReader::Text>& other : zips_) {
+          if (std::any_of(other.begin(), other.end(), [&](const auto& o) { return o.value == name.value; })) {
+            read_.fail(*name.node, fmt::format("{} is in a zip already", name.value));
+          }
+        }
+      }
+      zips_.push_back(std::move(names));
+    }
+  }
+
+  bool zipped(const std::string& axis) const {
+    return whole_zip_ || std::any_of(zips_.begin(), zips_.end(), [&](const auto& zip) {
+             return std::any_of(zip.begin(), zip.end(), [&](const auto& name) { return name.value == axis; });
+           });
+  }
+
+  std::vector<Value> read_axis(const SpecReader::Entry& entry) {
+    auto infos = owners_.find(entry);
+    std::vector<Value> values;
+    if (const toml::table* table = entry.node->as_table()) {
+      const AxisRange range = read_.range(*table, entry.name);
+      try {
+        if (design_ && !range.steps) {
+          check_range(infos.front().second, range);
+          for (const double end : {range.from, range.to})
+            check_end(entry, infos, end);
+          drawn_.push_back({block_.axes.size(), std::move(infos), range, entry});
+          return {};
+        }
+        values = expand_range(infos.front().second, range);
+      } catch (const InputError& e) {
+        read_.fail(*entry.node, fmt::format("{}: {}", entry.name, e.what()));
+      }
+      for (Value& value : values)
+        value = owners_.check(infos, *entry.node, value);
+      return values;
+    }
+    const toml::array* list = entry.node->as_array();
+    if (list == nullptr) {
+      read_.fail(*entry.node,
+                 fmt::format("axis {} is a list of values or a range {{ from, to, steps | log2 }}; a single value "
+                             "belongs under [run.fixed]",
+                             entry.name));
+    }
+    if (list->empty()) read_.fail(*list, fmt::format("axis {} lists no value", entry.name));
+    for (const toml::node& node : *list) {
+      Value value = owners_.check(infos, node, read_.value(node, entry.name));
+      // Walked together with other axes, a value may well come again.
+      if (!zipped(entry.name) && std::find(values.begin(), values.end(), value) != values.end()) {
+        read_.fail(node, fmt::format("axis {} lists {} twice", entry.name, to_text(value)));
+      }
+      values.push_back(std::move(value));
+    }
+    return values;
+  }
+
+  /// A drawn axis never lies outside of its ends, so these alone are checked here.
+  void check_end(const SpecReader::Entry& entry, const Owners::Found& infos, double end) const {
+    const bool whole = infos.front().second.type == ValueType::integer;
+    if (whole && end != std::round(end)) {
+      read_.fail(*entry.node, fmt::format("{}: the range ends at {}, and {} is an integer", entry.name, end,
+                                          infos.front().second.name));
+    }
+    owners_.check(infos, *entry.node, whole ? Value(static_cast<std::int64_t>(end)) : Value(end));
+  }
+
+  void draw() {
+    if (drawn_.empty()) return;
+    if (drawn_.size() > kMaxDesignAxes) {
+      read_.fail(*table_.get("design"), fmt::format("a design may have {} axes", kMaxDesignAxes));
+    }
+    for (const std::vector<double>& point : unit_points(*design_, drawn_.size())) {
+      for (std::size_t d = 0; d < drawn_.size(); ++d) {
+        const Drawn& drawn = drawn_[d];
+        const Value value = value_at(drawn.infos.front().second, drawn.range, point[d]);
+        block_.axes[drawn.axis].values.push_back(owners_.check(drawn.infos, *drawn.entry.node, value));
+      }
+    }
+  }
+
+  void make_walks() {
+    std::vector<bool> taken(block_.axes.size(), false);
+    const auto walk = [&](Walk axes) {
+      for (const std::size_t axis : axes)
+        taken[axis] = true;
+      block_.walks.push_back(std::move(axes));
+    };
+    Walk drawn;
+    for (const Drawn& d : drawn_)
+      drawn.push_back(d.axis);
+    for (std::size_t i = 0; i < block_.axes.size(); ++i) {
+      if (taken[i]) continue;
+      if (whole_zip_) {
+        Walk all(block_.axes.size());
+        std::iota(all.begin(), all.end(), 0);
+        walk(std::move(all));
+      } else if (std::find(drawn.begin(), drawn.end(), i) != drawn.end()) {
+        walk(drawn);
+      } else {
+        walk(zip_of(i));
+      }
+      check_lengths(block_.walks.back());
+    }
+    for (const std::vector<SpecReader::Text>& zip : zips_) {
+      for (const SpecReader::Text& name : zip)
+        static_cast<void>(axis_named(name));
+    }
+  }
+
+  std::size_t axis_named(const SpecReader::Text& name) const {
+    std::vector<std::string> names;
+    for (const Axis& axis : block_.axes)
+      names.push_back(axis.name);
+    read_.one_of(*name.node, name.value, names, "axis");
+    const std::size_t axis =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), name.value) - names.begin());
+    if (std::any_of(drawn_.begin(), drawn_.end(), [&](const Drawn& d) { return d.axis == axis; })) {
+      read_.fail(*name.node,
+                 fmt::format("{} is drawn by the design, which walks its axes together already", name.value));
+    }
+    return axis;
+  }
+
+  Walk zip_of(std::size_t axis) const {
+    for (const std::vector<SpecReader::Text>& zip : zips_) {
+      if (std::none_of(zip.begin(), zip.end(), [&](const auto& n) { return n.value == block_.axes[axis].name; }))
+        continue;
+      Walk axes;
+      for (const SpecReader::Text& name : zip)
+        axes.push_back(axis_named(name));
+      std::sort(axes.begin(), axes.end());
+      return axes;
+    }
+    return {axis};
+  }
+
+  void check_lengths(const Walk& walk) const {
+    const Axis& first = block_.axes[walk.front()];
+    for (const std::size_t i : walk) {
+      const Axis& axis = block_.axes[i];
+      if (axis.values.size() != first.values.size()) {
+        read_.fail(axis.at, fmt::format("a zip needs axes of equal length: {} has {} values, {} has {}", axis.name,
+                                        axis.values.size(), first.name, first.values.size()));
+      }
+    }
+  }
+
+  const SpecReader& read_;
+  const toml::table& table_;
+  RunBlock& block_;
+  Owners owners_;
+  std::optional<Design> design_;
+  bool whole_zip_ = false;
+  std::vector<std::vector<SpecReader::Text>> zips_;
+  std::vector<Drawn> drawn_;
+};
+
+void read_fixed(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
+  const toml::table* fixed = read.table(table, "fixed");
+  if (fixed == nullptr) return;
+  const Owners owners{read, catalogue, block};
+  for (const SpecReader::Entry& entry : read.entries(*fixed)) {
+    const Owners::Found infos = owners.find(entry);
+    const auto same = [&](const Axis& axis) { return axis.name == entry.name; };
+    if (std::any_of(block.axes.begin(), block.axes.end(), same)) {
+      read.fail(entry.at, fmt::format("{} is an axis of this block already", entry.name));
+    }
+    block.fixed.push_back({entry.name, owners.check(infos, *entry.node, read.value(*entry.node, entry.name))});
+  }
+}
+
+}  // namespace
+
+void read_axes(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
+  AxesReader(read, table, catalogue, block).read_all();
+  read_fixed(read, table, catalogue, block);
+}
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,178 @@
+#include "sweeps/tune/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sweeps/tune/surrogate.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+/// Expected improvement, as a share of the cost, below which nothing promises more.
+constexpr double kSettled = 1e-3;
+/// Of measuring costs and errors, in their logarithms.
+constexpr double kCostNoise = 0.02;
+constexpr double kErrorNoise = 0.005;
+
+double normal_below(double x) {
+  return std::erfc(-x / std::sqrt(2.0)) / 2;
+}
+double normal_density(double x) {
+  return std::exp(-x * x / 2) / std::sqrt(2 * std::acos(-1.0));
+}
+
+double distance2(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+class Search {
+ public:
+  Search(const std::vector<std::vector<double>>& settings, const SearchOptions& options,
+         const std::vector<std::optional<Outcome>>& known,
+         const std::function<std::optional<Outcome>(std::size_t)>& measure)
+      : settings_(settings), options_(options), measure_(measure), outcomes_(known), tried_(settings.size(), false) {
+    outcomes_.resize(settings.size());
+    for (std::size_t i = 0; i < settings.size(); ++i)
+      tried_[i] = outcomes_[i].has_value();
+  }
+
+  SearchResult run() {
+    const std::size_t dimensions = settings_.empty() ? 0 : settings_.front().size();
+    const std::size_t first = std::min(options_.budget, std::max<std::size_t>(3, dimensions + 1));
+    while (successes() < first && spent_ < options_.budget) {
+      const auto next = farthest();
+      if (!next) break;
+      take(*next);
+    }
+    while (spent_ < options_.budget && successes() > 0) {
+      const auto next = most_promising();
+      if (!next) {
+        result_.settled = true;
+        break;
+      }
+      take(*next);
+    }
+    if (std::all_of(tried_.begin(), tried_.end(), [](bool t) { return t; })) result_.settled = true;
+    result_.best = best();
+    return result_;
+  }
+
+ private:
+  std::size_t successes() const {
+    return static_cast<std::size_t>(
+        std::count_if(outcomes_.begin(), outcomes_.end(), [](const auto& o) { return o.has_value(); }));
+  }
+
+  void take(std::size_t setting) {
+    tried_[setting] = true;
+    ++spent_;
+    outcomes_[setting] = measure_(setting);
+    result_.measured.push_back(setting);
+  }
+
+  bool acceptable(const Outcome& outcome) const { return outcome.error <= options_.bound; }
+
+  std::optional<std::size_t> best() const {
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+      if (outcomes_[i] && acceptable(*outcomes_[i]) && (!found || outcomes_[i]->cost < outcomes_[*found]->cost))
+        found = i;
+    }
+    return found;
+  }
+
+  /// The setting farthest from all that were tried; at first, the one nearest to the middle.
+  std::optional<std::size_t> farthest() const {
+    std::optional<std::size_t> found;
+    double largest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < settings_.size(); ++i) {
+      if (tried_[i]) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j < settings_.size(); ++j) {
+        if (tried_[j]) nearest = std::min(nearest, distance2(settings_[i], settings_[j]));
+      }
+      if (std::isinf(nearest)) nearest = -distance2(settings_[i], std::vector<double>(settings_[i].size(), 0.5));
+      if (nearest > largest) {
+        largest = nearest;
+        found = i;
+      }
+    }
+    return found;
+  }
+
+  double error_value(double error) const { return options_.errors_positive ? std::log(std::max(error, 1e-12)) : error; }
+
+  std::optional<std::size_t> most_promising() const {
+    std::vector<std::vector<double>> places;
+    std::vector<double> costs;
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < settings_.size(); ++i) {
+      if (!outcomes_[i]) continue;
+      places.push_back(settings_[i]);
+      costs.push_back(std::log(std::max(outcomes_[i]->cost, 1e-12)));
+      errors.push_back(error_value(outcomes_[i]->error));
+    }
+    const Surrogate cost(places, costs, kCostNoise);
+    const Surrogate error(places, errors, kErrorNoise);
+    const std::optional<std::size_t> so_far = best();
+    const double limit = so_far ? std::log(std::max(outcomes_[*so_far]->cost, 1e-12)) : 0;
+    std::optional<std::size_t> found;
+    double largest = so_far ? kSettled : 0;
+    for (std::size_t i = 0; i < settings_.size(); ++i) {
+      if (tried_[i]) continue;
+      const Prediction e = error.at(settings_[i]);
+      const double z = (error_value(options_.bound) - e.mean) / std::max(e.deviation, 1e-9);
+      double promise = normal_below(z);
+      if (so_far) {
+        const Prediction c = cost.at(settings_[i]);
+        const double deviation = std::max(c.deviation, 1e-9);
+        const double u = (limit - c.mean) / deviation;
+        promise *= deviation * (u * normal_below(u) + normal_density(u));
+      }
+      if (promise > largest) {
+        largest = promise;
+        found = i;
+      }
+    }
+    // Without an acceptable setting yet, and none that promises to be one, the unknown is all that is left.
+    return !found && !so_far ? farthest() : found;
+  }
+
+  const std::vector<std::vector<double>>& settings_;
+  const SearchOptions& options_;
+  const std::function<std::optional<Outcome>(std::size_t)>& measure_;
+  std::vector<std::optional<Outcome>> outcomes_;
+  std::vector<bool> tried_;
+  std::size_t spent_ = 0;
+  SearchResult result_;
+};
+
+}  // namespace
+
+SearchResult search_cheapest(const std::vector<std::vector<double>>& settings, const SearchOptions& options,
+                             const std::vector<std::optional<Outcome>>& known,
+                             const std::function<std::optional<Outcome>(std::size_t)>& measure) {
+  return Search(settings, options, known, measure).run();
+}
+
+std::vector<std::size_t> front(const std::vector<std::optional<Outcome>>& outcomes) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i]) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return outcomes[a]->cost != outcomes[b]->cost ? outcomes[a]->cost < outcomes[b]->cost
+                                                  : outcomes[a]->error < outcomes[b]->error;
+  });
+  std::vector<std::size_t> result;
+  for (const std::size_t i : order) {
+    if (result.empty() || outcomes[i]->error < outcomes[result.back()]->error) result.push_back(i);
+  }
+  return result;
+}
+
+}  // namespace pellucid::sweeps

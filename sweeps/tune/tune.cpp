@@ -1,0 +1,162 @@
+#include "sweeps/tune/tune.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/parameters.hpp"
+#include "gl/error.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kAtLeast = 6;
+
+double field(const json& row, const std::string& name) {
+  const auto found = row.find(name);
+  if (found != row.end() && found->is_number()) return found->get<double>();
+  std::vector<std::string> names;
+  for (const auto& [other, value] : row.items()) {
+    if (value.is_number()) names.push_back(other);
+  }
+  const std::string near = nearest_name(name, names);
+  throw InputError(near.empty()
+                       ? fmt::format("the rows have no number '{}'; they have {}", name, fmt::join(names, ", "))
+                       : fmt::format("the rows have no number '{}'; did you mean '{}'?", name, near));
+}
+
+}  // namespace
+
+std::vector<TuneGroup> tune_groups(const Plan& plan) {
+  std::vector<TuneGroup> groups;
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    const Point& point = plan.points[i];
+    const auto same = [&](const TuneGroup& g) {
+      return g.scene == point.scene && g.view == point.view && g.size.width == point.size.width &&
+             g.size.height == point.size.height;
+    };
+    auto group = std::find_if(groups.begin(), groups.end(), same);
+    if (group == groups.end()) group = groups.insert(groups.end(), {point.scene, point.view, point.size, {}});
+    group->points.push_back(i);
+  }
+  return groups;
+}
+
+std::vector<std::vector<double>> coordinates(const Plan& plan, const TuneGroup& group) {
+  // Every value of every parameter, the technique among them. A technique lacks the parameters of another.
+  std::map<std::string, std::set<double>> numbers;
+  std::map<std::string, std::set<std::string>> words;
+  const auto visit = [&](const Point& point, const auto& number, const auto& word) {
+    word("technique", point.technique);
+    for (const auto& [name, value] : point.parameters) {
+      if (const auto* i = std::get_if<std::int64_t>(&value)) {
+        number(name, static_cast<double>(*i));
+      } else if (const auto* d = std::get_if<double>(&value)) {
+        number(name, *d);
+      } else {
+        word(name, to_text(value));
+      }
+    }
+  };
+  for (const std::size_t i : group.points) {
+    visit(
+        plan.points[i], [&](const std::string& name, double value) { numbers[name].insert(value); },
+        [&](const std::string& name, const std::string& value) { words[name].insert(value); });
+  }
+  std::erase_if(numbers, [](const auto& entry) { return entry.second.size() < 2; });
+  std::erase_if(words, [](const auto& entry) { return entry.second.size() < 2; });
+
+  std::vector<std::vector<double>> result;
+  for (const std::size_t i : group.points) {
+    std::map<std::string, double> place;
+    for (const auto& [name, values] : numbers)
+      place[name] = 0.5;
+    for (const auto& [name, values] : words) {
+      for (const std::string& value : values)
+        place[name + "=" + value] = 0;
+    }
+    visit(
+        plan.points[i],
+        [&](const std::string& name, double value) {
+          const auto known = numbers.find(name);
+          if (known == numbers.end()) return;
+          const auto rank = std::distance(known->second.begin(), known->second.find(value));
+          place[name] = static_cast<double>(rank) / static_cast<double>(known->second.size() - 1);
+        },
+        [&](const std::string& name, const std::string& value) {
+          if (words.contains(name)) place[name + "=" + value] = 1;
+        });
+    std::vector<double>& coordinates = result.emplace_back();
+    for (const auto& [name, value] : place)
+      coordinates.push_back(value);
+  }
+  return result;
+}
+
+std::optional<Outcome> outcome_of(const json& row, const TuneOptions& options) {
+  if (row.value("status", "") != "ok") return std::nullopt;
+  Outcome outcome;
+  outcome.cost = outcome.cost_low = outcome.cost_high = field(row, options.cost);
+  if (options.cost == "frame_ms_median") {
+    outcome.cost_low = row.value("frame_ms_ci95_low", outcome.cost);
+    outcome.cost_high = row.value("frame_ms_ci95_high", outcome.cost);
+  }
+  // Equal images have an infinite psnr, which a row cannot hold.
+  const auto quantity = row.find(options.quantity);
+  const bool infinite = quantity != row.end() && quantity->is_null() && options.at_least;
+  outcome.error = infinite ? 1e300 : field(row, options.quantity);
+  if (options.at_least) outcome.error = -outcome.error;
+  return outcome;
+}
+
+std::vector<TuneAnswer> tune(const Plan& plan, const TuneOptions& options,
+                             const std::function<const json*(std::size_t)>& row_of,
+                             const std::function<void(std::size_t)>& measure) {
+  std::vector<TuneAnswer> answers;
+  for (TuneGroup& group : tune_groups(plan)) {
+    TuneAnswer answer;
+    std::vector<std::optional<Outcome>> known;
+    for (const std::size_t point : group.points) {
+      const json* row = row_of(point);
+      known.push_back(row != nullptr ? outcome_of(*row, options) : std::nullopt);
+    }
+    SearchOptions search;
+    search.bound = options.at_least ? -options.bound : options.bound;
+    search.errors_positive = !options.at_least;
+    search.budget = std::max(
+        kAtLeast, static_cast<std::size_t>(std::floor(options.share * static_cast<double>(group.points.size()))));
+    const std::vector<std::optional<Outcome>> before = known;
+    const SearchResult found =
+        search_cheapest(coordinates(plan, group), search, before, [&](std::size_t i) -> std::optional<Outcome> {
+          measure(group.points[i]);
+          const json* row = row_of(group.points[i]);
+          known[i] = row != nullptr ? outcome_of(*row, options) : std::nullopt;
+          return known[i];
+        });
+    answer.settled = found.settled;
+    for (const std::size_t i : found.measured)
+      answer.measured.push_back(group.points[i]);
+    for (const std::size_t i : front(known))
+      answer.front.push_back(group.points[i]);
+    if (found.best) {
+      answer.best = group.points[*found.best];
+      for (std::size_t i = 0; i < known.size(); ++i) {
+        const bool rival = i != *found.best && known[i] && known[i]->error <= search.bound &&
+                           known[i]->cost_low <= known[*found.best]->cost_high;
+        if (rival) answer.rivals.push_back(group.points[i]);
+      }
+    }
+    answer.outcomes = std::move(known);
+    answer.group = std::move(group);
+    answers.push_back(std::move(answer));
+  }
+  return answers;
+}
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,76 @@
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sweeps/spec/point_json.hpp"
+#include "sweeps/workers/progress.hpp"
+#include "sweeps/workers/run.hpp"
+#include "sweeps/workers/stop_signals.hpp"
+#include "sweeps/workers/worker_client.hpp"
+#include "sweeps/workers/worker_protocol.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+/// Points that agree in this have one reference. Some that differ may have one too; the cache knows.
+std::string reference_of(const Point& point) {
+  std::string key = fmt::format("{} {} {}x{} {}", point.scene, point.view, point.size.width, point.size.height,
+                                to_json(point.reference).dump());
+  for (const auto& [name, value] : point.parameters) {
+    const bool counts = name.starts_with("scene.") || name.starts_with("frame.") || name.starts_with("shadow.");
+    if (counts) key += fmt::format(" {}={}", name, to_text(value));
+  }
+  return key;
+}
+
+}  // namespace
+
+ReferencesSummary trace_references(const Spec& spec, const Plan& plan, const std::filesystem::path& folder,
+                                   const RunOptions& options) {
+  std::vector<const Point*> points;
+  std::set<std::string> seen;
+  for (const Point& point : plan.points) {
+    if (!point.metrics.empty() && seen.insert(reference_of(point)).second) points.push_back(&point);
+  }
+  ReferencesSummary summary;
+  summary.planned = points.size();
+  const StopSignals signals;
+  SweepProgress progress(points.size(), 0, 0, 1, options.quiet);
+  const std::optional<int> device = options.devices.empty() ? std::nullopt : std::optional(options.devices.front());
+  WorkerClient client(options.worker, device, spec.timeout_s);
+  const WorkerClient::Hooks hooks{[&](const std::string& phase, double share) { progress.phase(phase, share); },
+                                  [&] {
+                                    progress.tick();
+                                    return !signals.caught();
+                                  }};
+  for (const Point* point : points) {
+    if (signals.caught() || signals.warned()) break;
+    const std::string what =
+        fmt::format("reference of {} {} {}x{}", point->scene, point->view, point->size.width, point->size.height);
+    progress.begin(what);
+    if (!client.running() && !client.start(hooks)) break;
+    const auto start = std::chrono::steady_clock::now();
+    const WorkerClient::Answer answer = client.ask(
+        {{"type", "reference"}, {"point", point_to_json(*point)}, {"references", folder.string()}}, point->id, hooks);
+    if (answer.outcome == WorkerClient::Outcome::stopped) break;
+    const bool failed = answer.outcome == WorkerClient::Outcome::failed;
+    if (failed) {
+      summary.failures.push_back(answer.reason);
+      progress.note(fmt::format("failed: {}", answer.reason));
+    } else {
+      ++summary.done;
+    }
+    progress.finish(what, failed ? "failed" : "done",
+                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  summary.interrupted =
+      signals.caught() || (signals.warned() && summary.done + summary.failures.size() < points.size());
+  if (!signals.caught()) client.close();
+  return summary;
+}
+
+}  // namespace pellucid::sweeps

@@ -1,0 +1,71 @@
+#include "sweeps/cluster/slurm.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.hpp"
+
+namespace pellucid::sweeps {
+namespace {
+
+SlurmOptions options(const std::filesystem::path& folder) {
+  SlurmOptions o;
+  o.folder = folder;
+  o.program = "/opt/pell ucid/bin/pellucid";
+  o.spec = "/home/me/it's.toml";
+  o.name = "s";
+  o.partition = "gpu";
+  o.gpus_per_task = "a100:1";
+  o.constraint = "a100";
+  o.time = "01:00:00";
+  o.shards = 16;
+  o.at_once = 4;
+  o.timed = o.untimed = o.metrics = true;
+  o.sbatch = {"--mem=8G"};
+  return o;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Slurm, WritesScriptsThatAShellCanRead) {
+  const pellucid::test::TemporaryFolder folder;
+  write_slurm_scripts(options(folder / "out"));
+  for (const char* name : {"references.sbatch", "quality.sbatch", "timing.sbatch", "merge.sbatch", "submit.sh"}) {
+    const std::string path = (folder / "out" / name).string();
+    ASSERT_TRUE(std::filesystem::exists(path)) << name;
+    EXPECT_EQ(std::system(("bash -n '" + path + "'").c_str()), 0) << name;
+  }
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "out" / "shards"));
+}
+
+TEST(Slurm, TimingHasItsNodesToItselfAndQualityDoesNot) {
+  const auto scripts = slurm_scripts(options("/shared/out"));
+  const std::string& timing = scripts.at("timing.sbatch");
+  const std::string& quality = scripts.at("quality.sbatch");
+  for (const std::string* script : {&timing, &quality}) {
+    for (const char* line : {"#SBATCH --array=1-16%4\n", "#SBATCH --requeue\n", "#SBATCH --partition=gpu\n",
+                             "#SBATCH --gpus-per-task=a100:1\n", "#SBATCH --constraint=a100\n", "#SBATCH --mem=8G\n",
+                             "#SBATCH --signal=B:USR1@120\n", "spec='/home/me/it'\\''s.toml'\n"})
+      EXPECT_TRUE(has(*script, line)) << line;
+  }
+  EXPECT_TRUE(has(timing, "#SBATCH --exclusive\n"));
+  EXPECT_FALSE(has(quality, "--exclusive"));
+  EXPECT_TRUE(has(scripts.at("submit.sh"), "--dependency=afterany:$quality:$timing merge.sbatch"));
+  EXPECT_TRUE(has(scripts.at("submit.sh"), "--dependency=afterany:$references timing.sbatch"));
+}
+
+TEST(Slurm, LeavesOutWhatIsNotNeeded) {
+  SlurmOptions o = options("/shared/out");
+  o.untimed = o.metrics = false;
+  const auto scripts = slurm_scripts(o);
+  EXPECT_FALSE(scripts.contains("quality.sbatch"));
+  EXPECT_FALSE(scripts.contains("references.sbatch"));
+  EXPECT_FALSE(has(scripts.at("submit.sh"), "$references"));
+}
+
+}  // namespace
+}  // namespace pellucid::sweeps
