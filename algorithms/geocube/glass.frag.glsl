@@ -112,6 +112,11 @@ void main() {
     cube = found.cube;
     start = next_start(found, h);
   }
+#ifdef SCATTERING
+  // What is still inside would go on to where this search does not follow it. Its scattered part leaves somewhere, and the mean of
+  // the environment stands for what it sees there; the rest is left out, as in a clear medium.
+  color += weight * scattered * mean_radiance;
+#endif
 #ifdef COUNT
   fetched = vec4(both_fetched, bounds_fetched, lights_fetched, 1.0);
 #else

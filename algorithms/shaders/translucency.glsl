@@ -31,6 +31,8 @@ vec3 through(vec4 one, vec4 two, vec3 direction) {
   return light;
 }
 
+vec3 scattered = vec3(0.0);  // what gets through the thickness that translucent() was last asked about, having scattered
+
 // The light along a ray that went through an optical thickness, by channel, and of which `share` leaves in `direction`; and
 // what the medium reflects over the last stretch, where `reflected` is what it had reflected before.
 vec3 translucent(vec3 depth, vec3 direction, float share, inout vec3 reflected) {
@@ -42,6 +44,7 @@ vec3 translucent(vec3 depth, vec3 direction, float share, inout vec3 reflected) 
     light[c] = (one.w - reflected[c]) * mean_radiance[c];
     if (share > 0.0) light[c] += share * through(one, two, direction)[c];
     reflected[c] = one.w;
+    scattered[c] = max(one.y + one.z + two.y + two.z - exp(-depth[c]), 0.0);
   }
   return light;
 #else
@@ -50,6 +53,7 @@ vec3 translucent(vec3 depth, vec3 direction, float share, inout vec3 reflected) 
   vec3 light = (one.w - reflected.x) * mean_radiance;
   if (share > 0.0) light += share * through(one, two, direction);
   reflected = vec3(one.w);
+  scattered = vec3(max(one.y + one.z + two.y + two.z - exp(-depth.x), 0.0));
   return light;
 #endif
 }
