@@ -89,7 +89,7 @@ TEST_P(Replay, NeitherCrashesNorHangs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, Replay, ::testing::Range(std::size_t{0}, targets().size()),
-                         [](const auto& info) { return std::string(targets()[info.param].name); });
+                         [](const auto& target) { return std::string(targets()[target.param].name); });
 
 }  // namespace
 }  // namespace pellucid::fuzz
