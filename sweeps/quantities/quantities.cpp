@@ -130,7 +130,9 @@ const std::vector<Quantity>& quantities() {
     files.insert(files.end(), of_techniques.begin(), of_techniques.end());
     for (const std::string& name : files) {
       const TomlFile file{name};
-      const auto document = parse_toml(find_resource(name).value_or(""), file);
+      const std::optional<std::string> text = find_resource(name);
+      assert(text && "gl/CMakeLists.txt embeds the declarations");
+      const auto document = parse_toml(*text, file);
       TableReader root(file, *document);
       for (Quantity& quantity : read_quantities(root, false)) {
         if (name != kOwnFile) quantity.module = std::filesystem::path(name).parent_path().filename().string();

@@ -78,6 +78,7 @@ TEST(KeptTables, NotesSayWhereTheRowsComeFrom) {
 
 // A paper that repeats the tables of another under its own name is a file and no more.
 TEST(KeptTables, APaperUnderAnotherNameIsAFileAlone) {
+  std::size_t filled = 0;
   for (const PaperPointer& paper : papers()) {
     const std::string text = "name = \"another\"\n" + find_resource(paper->file.shown).value_or("");
     const PaperPointer another = parse_paper(text, "another.toml");
@@ -87,11 +88,13 @@ TEST(KeptTables, APaperUnderAnotherNameIsAFileAlone) {
       const Table copy = make_table(PaperEntry{another, name}, rows());
       EXPECT_EQ(copy.info.name, "another." + name);
       EXPECT_EQ(copy.info.address, "another.toml:" + name);
-      EXPECT_FALSE(copy.sweep.empty()) << name;
-      EXPECT_EQ(format_table(copy, TableFormat::csv),
-                format_table(make_table(PaperEntry{paper, name}, rows()), TableFormat::csv));
+      const Table first = make_table(PaperEntry{paper, name}, rows());
+      EXPECT_EQ(copy.sweep, first.sweep);
+      EXPECT_EQ(format_table(copy, TableFormat::csv), format_table(first, TableFormat::csv));
+      filled += copy.sweep.empty() ? 0 : 1;
     }
   }
+  EXPECT_EQ(filled, 15U) << "those that have rows here";
 }
 
 }  // namespace

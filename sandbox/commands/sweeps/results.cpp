@@ -1,5 +1,7 @@
 // pellucid results, table.
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -105,11 +107,22 @@ void add_json_flag(cli::App& app, std::string& format) {
       ->excludes("--format");
 }
 
-std::string names_text() {
+std::string table_footer() {
+  const std::vector<TableInfo> all = tables();
+  std::size_t width = 0;
+  for (const TableInfo& info : all)
+    width = std::max(width, info.name.size());
   std::string text = "Tables:\n";
-  for (const TableInfo& info : tables())
-    text += fmt::format("  {:<24} {}\n", info.name, info.source);
-  return text;
+  for (const TableInfo& info : all)
+    text += fmt::format("  {:<{}}  {}\n", info.name, width, info.source);
+  const TableInfo& first = all.front();
+  return text + fmt::format(
+                    "\nExamples:\n"
+                    "  pellucid sweep run {0} --store S.db\n"
+                    "  pellucid table {1} --store S.db\n"
+                    "  pellucid table {1} --store S.db --format latex --bold-best -o table.tex\n"
+                    "  pellucid table my.toml:hulls --store S.db",
+                    first.spec_path, first.name);
 }
 
 }  // namespace
@@ -151,13 +164,7 @@ void add_results(cli::App& root, std::vector<Command>& commands) {
   table_app->add_option("--device-name", options->device,
                         "take the rows whose device and driver contain this, where a store holds several");
   table_app->add_option("-o,--output", options->output, "write to this file instead of standard output");
-  table_app->footer([] {
-    return names_text() +
-           "\nExamples:\n"
-           "  pellucid table table1 --store hulls.db\n"
-           "  pellucid table table1 --store hulls.db --format latex --bold-best -o table1.tex\n"
-           "  pellucid table my.toml:hulls --store my.db";
-  });
+  table_app->footer(&table_footer);
   commands.push_back({table_app, [options] { return table(*options); }});
 }
 
