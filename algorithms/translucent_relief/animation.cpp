@@ -1,5 +1,6 @@
 #include "algorithms/translucent_relief/animation.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <span>
@@ -41,9 +42,14 @@ void Animation::run(const ReliefMotion& motion, const gl::Texture& heights, cons
     rain_.set("count", motion.rain.drops);
     rain_.set("largest", motion.rain.largest);
     rain_.set("fall", motion.rain.fall);
-    rain_.set("steps", motion.steps);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    // llvmpipe ends a shader's loops after 65,535 rounds in all: a few steps at a time, each of three loops over drops.
+    const int most = std::max(1, 16384 / motion.rain.drops);
+    for (int first = 0; first == 0 || first < motion.steps; first += most) {
+      rain_.set("first_step", first);
+      rain_.set("steps", std::min(most, motion.steps - first));
+      glDispatchCompute(1, 1, 1);
+      glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    }
     ground_ = gl::Texture::make_2d("ground of drops", gl::Format::r32f, motion.ground_m.width, motion.ground_m.height);
     ground_.upload(motion.ground_m.pixels);
     ground_.bind(0);

@@ -10,7 +10,8 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
   if (!(range.x < range.y)) return -1.0;
   float across = length(ray.direction.xy * ray.uv_per_metre * tiles);  // of the map, for each metre
   float upward = ray.direction.z / range_m;
-  float least = (range.y - range.x) / 2048.0;
+  // On a surface cones have no width: at least as far as equal steps go.
+  float least = (range.y - range.x) / float(steps);
   float before = range.x, height_before = 0.0, t = range.x;
   for (int i = 0; i < steps; ++i) {
     float height = above(layer, ray, t);

@@ -103,7 +103,7 @@ float range_of(int layer) {
   return solid_range.y;
 }
 
-// A little more than the heights take, so that the lowest of them is found.
+// A little more than the heights take, so that the lowest and the highest of them are found.
 vec2 bounds_of(int layer) {
   vec2 solid = vec2(solid_range.x, solid_range.x + solid_range.y);
   vec2 bounds = solid;
@@ -112,7 +112,7 @@ vec2 bounds_of(int layer) {
   if (layer == kMedium) bounds = medium;
   else if (layer == kEither) bounds = vec2(min(solid.x, medium.x), max(solid.y, medium.y));
 #endif
-  return vec2(bounds.x - 1e-3 * (bounds.y - bounds.x), bounds.y);
+  return bounds + 1e-3 * (bounds.y - bounds.x) * vec2(-1.0, 1.0);
 }
 
 vec2 clip_to_layer(int layer, Ray ray, float from) {

@@ -5,11 +5,12 @@ layout(local_size_x = 256) in;
 struct Drop {
   int x, y, radius, life;
 };
-layout(std430, binding = 0) writeonly buffer Drops { Drop result[]; };
+layout(std430, binding = 0) buffer Drops { Drop result[]; };
 uniform int seed;
 uniform int count;
 uniform int largest;
 uniform int fall;
+uniform int first_step;  // 0: from the dry start, else from the drops in the buffer
 uniform int steps;
 
 const int kUnits = 4096, kMask = kUnits - 1;
@@ -56,8 +57,11 @@ void move(inout ivec4 drop, int index, int step) {
 void main() {
   int i = int(gl_LocalInvocationID.x);
   bool used = i < count;
-  if (used) drops[i] = born(i, 0);
-  for (int step = 0; step < steps; ++step) {
+  if (used) {
+    Drop last = result[i];
+    drops[i] = first_step == 0 ? born(i, 0) : ivec4(last.x, last.y, last.radius, last.life);
+  }
+  for (int step = first_step; step < first_step + steps; ++step) {
     if (used) move(drops[i], i, step);
     barrier();
     ivec4 own = used ? drops[i] : ivec4(0);

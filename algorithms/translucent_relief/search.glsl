@@ -36,7 +36,8 @@ float linear_crossing(int layer, Ray ray, vec2 range, float side, float bias, in
                       inout float taken) {
   if (!(range.x < range.y)) return -1.0;
   float stride = (range.y - range.x) / float(steps);
-  float before = range.x, after = range.x, height_before = 0.0, height_after = 0.0;
+  float before = range.x, after = range.x, height_before = max(side * above(layer, ray, range.x), 0.0), height_after = 0.0;
+  taken += 1.0;
   bool found = false;
   for (int i = 1; i <= steps; ++i) {
     after = range.x + stride * float(i);

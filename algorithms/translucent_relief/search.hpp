@@ -22,7 +22,8 @@ Crossing linear_crossing(Above above, const glm::vec2& range, float side, float 
   Crossing crossing;
   if (!(range.x < range.y)) return crossing;
   const float stride = (range.y - range.x) / static_cast<float>(steps);
-  float before = range.x, after = range.x, height_before = 0.0F, height_after = 0.0F;
+  float before = range.x, after = range.x, height_before = std::max(side * above(range.x), 0.0F), height_after = 0.0F;
+  ++crossing.taken;
   bool found = false;
   for (int i = 1; i <= steps && !found; ++i) {
     after = range.x + stride * static_cast<float>(i);

@@ -118,14 +118,14 @@ TEST_F(SceneReliefs, MapsFromFiles) {
 
 TEST_F(SceneReliefs, MistakesAreNamed) {
   const std::string flat = "[reliefs.a.solid]\nshape = \"flat\"\n";
-  EXPECT_EQ(error_of("[reliefs.a]\ntiling = [1, 1]\n"), "reliefs.a.solid is missing");
+  EXPECT_EQ(error_of("[reliefs.a]\ntiling = [1, 1]\n"), "'solid' is missing in reliefs.a");
   EXPECT_EQ(error_of(flat + "low = 0\n"), "reliefs.a.solid: low 0 must be below high 0");
   EXPECT_EQ(error_of(flat + "[reliefs.a.translucent]\nshape = \"flat\"\nindex = 0\n"),
-            "reliefs.a.translucent.index = 0 is out of [0.2, 5]");
+            "reliefs.a.translucent.index = 0 is out of range [0.2, 5]");
   EXPECT_EQ(error_of("[reliefs.a.solid]\nshape = \"drops\"\n"),
             "reliefs.a.solid.shape: drops lie on a solid: they are translucent");
-  EXPECT_EQ(error_of(flat + "[instances.g]\nmesh = \"plane\"\nmaterial = \"white\"\nrelief = \"b\"\n"),
-            "instances.g.relief: there is no relief 'b'; there are a");
+  EXPECT_EQ(error_of(flat + "[instances.g]\nmesh = \"plane\"\nmaterial = \"white\"\nrelief = \"other\"\n"),
+            "instances.g.relief: there is no relief 'other'; there are a");
   EXPECT_EQ(error_of(flat + "[instances.g]\nmesh = \"plane\"\nmaterial = \"mirror\"\nrelief = \"a\"\n"),
             "instances.g.relief: what lies on a relief is not a mirror, a metal or a dielectric: its material is "
             "lambertian");
