@@ -41,7 +41,7 @@ json row(int n, const std::vector<double>& samples, double flip = 0.1) {
 /// Two runs of `points` points; `factor` says how much longer each takes in the second.
 RowComparison two_runs(
     std::size_t points, std::uint64_t seed, double between,
-    const std::function<double(std::size_t)>& factor = [](std::size_t) { return 1.0; }) {
+    const std::function<double(std::size_t)>& factor = [](std::size_t) { return 1.0; }, std::size_t samples = 30) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> shift(0, between);
   std::vector<json> a;
