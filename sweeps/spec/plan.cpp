@@ -144,6 +144,7 @@ class Expander {
       too_many(block);
     }
     const std::size_t before = plan_.members.size();
+    plan_.points.reserve(std::min(kMaxPoints, plan_.points.size() + each * places));
     skipped_.assign(block.constraints.size() + 1, 0);
     in_block_.clear();
     for (const std::string& technique : block.techniques) {

@@ -4,10 +4,17 @@
 set -euo pipefail
 
 readonly program=$1
-python3 -c 'import pandas, numpy' 2>/dev/null || {
+python=
+for candidate in /usr/bin/python3 python3; do
+  if "$candidate" -c 'import pandas, numpy' 2>/dev/null; then
+    python=$candidate
+    break
+  fi
+done
+if [[ -z $python ]]; then
   echo "skipped: python3 has no pandas (Debian package python3-pandas)"
   exit 77
-}
+fi
 folder=$(mktemp -d)
 trap 'rm -rf -- "$folder"' EXIT
 cd "$folder"
@@ -43,7 +50,7 @@ sizes = ["16x12"]
 scene.density = { from = 0.7, to = 1.0, steps = 4 }
 SPEC
 "$program" sweep run s.toml --store hulls.db --quiet
-python3 - <<'PYTHON'
+"$python" - <<'PYTHON'
 import sqlite3, pandas, numpy
 rows = pandas.read_sql("SELECT * FROM results", sqlite3.connect("hulls.db"))
 assert len(rows) == 4, rows
@@ -58,7 +65,7 @@ samples = numpy.frombuffer(blob, dtype="<f8")
 assert len(samples) == 5 and (samples > 0).all(), samples
 PYTHON
 "$program" results hulls.db --where 'scene.density>=0.9' --columns scene.density,frame_ms_samples --samples --format jsonl >rows.jsonl
-python3 - <<'PYTHON'
+"$python" - <<'PYTHON'
 import json
 rows = [json.loads(line) for line in open("rows.jsonl")]
 assert [row["scene.density"] for row in rows] == [0.9, 1.0], rows

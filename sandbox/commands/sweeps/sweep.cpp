@@ -206,8 +206,12 @@ int cluster_status(const std::filesystem::path& folder, bool as_json) {
   }
   if (error) throw InputError(fmt::format("'{}' is no folder of `sweep slurm`", folder.string()));
   std::vector<BlockStatus> blocks;
-  for (const std::string& key : order)
-    blocks.push_back(sums.at(key));
+  const bool started =
+      std::any_of(sums.begin(), sums.end(), [](const auto& sum) { return !sum.second.device.empty(); });
+  for (const std::string& key : order) {
+    // A shard that has no row yet knows no device; its points are left in the others' counts.
+    if (!started || !sums.at(key).device.empty()) blocks.push_back(sums.at(key));
+  }
   if (as_json) {
     fmt::print("{}\n", json{{"jobs", jobs}, {"blocks", blocks_json(blocks)}}.dump(2));
   } else {

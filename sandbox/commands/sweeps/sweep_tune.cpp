@@ -224,7 +224,8 @@ int tune_command(TuneArguments arguments) {
     if (!std::filesystem::exists(arguments.store, error)) return;
     for (json& row : Store(arguments.store, Access::read).rows(false, true)) {
       if (!device.empty() && row.value("device", "") + ", " + row.value("driver", "") != device) continue;
-      rows[row.at("point").get<std::string>()] = std::move(row);
+      std::string id = row.at("point").get<std::string>();  // before the row is moved
+      rows[std::move(id)] = std::move(row);
     }
   };
   read();
