@@ -159,6 +159,7 @@ Opened open_chosen(int index, bool debug) {
   if (index < 0 || static_cast<std::size_t>(index) >= devices.size()) {
     std::string known;
     for (const Device& device : list_devices()) {
+      if (device.index < 0) continue;  // without a device there is no number to pass
       if (!known.empty()) known += ", ";
       known += fmt::format("{} ({})", device.index, device.renderer);
     }

@@ -259,7 +259,8 @@ Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue, Exte
   }
   std::error_code error;
   if (!std::filesystem::is_regular_file(path_or_name, error)) {
-    throw InputError(fmt::format("{}: no such file", path_or_name));
+    throw InputError(fmt::format("{}: {}", path_or_name,
+                                 std::filesystem::exists(path_or_name, error) ? "not a file" : "no such file"));
   }
   if (std::filesystem::file_size(path_or_name, error) > kMaxSpecBytes) {
     throw InputError(fmt::format("{}: a spec may have {} bytes", path_or_name, kMaxSpecBytes));

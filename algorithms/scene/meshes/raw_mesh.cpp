@@ -169,6 +169,7 @@ void Faces::triangulate(const fs::path& path, RawMesh& mesh) const {
   for (std::size_t f = 0; f < begins_.size(); ++f) {
     const std::size_t end = f + 1 < begins_.size() ? begins_[f + 1] : corners_.size();
     const Polygon polygon(corners_.data() + begins_[f], end - begins_[f]);
+    if (polygon.empty()) throw unreadable_mesh(path, fmt::format("face {} has no corners", f));
     if (polygon.size() < 3)
       ++left_out;
     else

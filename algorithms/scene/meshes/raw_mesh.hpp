@@ -44,9 +44,9 @@ class Faces {
     begins_.reserve(faces);
     corners_.reserve(3 * faces);
   }
-  /// Appends the triangles to the mesh: convex faces as fans, others by cutting off ears (Meisters 1975). Faces of
-  /// fewer than three corners are left out, with a warning. Throws when there are too many, or a face is too large to
-  /// cut.
+  /// Appends the triangles to the mesh: convex faces as fans, others by cutting off ears (Meisters 1975). Faces of one
+  /// or two corners are left out, with a warning. Throws when there are too many, a face has no corners, or is too
+  /// large to cut.
   void triangulate(const std::filesystem::path&, RawMesh&) const;
 
  private:

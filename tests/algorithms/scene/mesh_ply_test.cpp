@@ -115,6 +115,7 @@ TEST_F(PlyFiles, PropertiesAndElementsThatAreNotUsedArePassedOver) {
 }
 
 TEST_F(PlyFiles, DamagedFilesAreRefusedInOneLine) {
+  EXPECT_EQ(refusal("a.ply", header("ascii") + text(5) + "0 \n"), "face 5 has no corners");
   EXPECT_EQ(refusal("a.ply", header("ascii") + text(5)), "it ends at face 5 of 6");
   EXPECT_EQ(refusal("a.ply", header("binary_little_endian") + binary().substr(0, 181)), "it ends at face 5 of 6");
   EXPECT_EQ(refusal("a.ply", header("binary_little_endian") + binary().substr(0, 180)),
