@@ -29,7 +29,7 @@ struct Parameters {
   int bounces = 2;
   int refractor_size = 256;
   int internal_reflections = 2;
-  Transfer transfer = Transfer::gaussian;
+  Transfer transfer = Transfer::unscattered;
   bool caustics = false;
   int caustic_size = 64;
   int light_map_size = 256;

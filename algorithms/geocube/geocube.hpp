@@ -37,7 +37,7 @@ struct Parameters {
   int table_size = 256;
   SearchStage stage = SearchStage::fragment;
   int vertex_iterations = 6;
-  Transfer transfer = Transfer::gaussian;
+  Transfer transfer = Transfer::unscattered;
   int face_size = 512;
   float omega = 0.02F;
   scattering::SphereFilter key_filter = scattering::SphereFilter::direct;

@@ -113,7 +113,7 @@ const gl::Texture& Translucency::table_of(const Material& material) {
     for (int i = 0; i < kEntries; ++i) {
       const TransferFit& fit = table.entries[static_cast<std::size_t>(i)];
       const double one[] = {widths_.level(settings_.widening * fit.theta_bar), fit.f_t, fit.c_t, fit.c_r};
-      const double two[] = {widths_.level(settings_.widening * fit.theta_2), fit.f_2, fit.sharp, 0};
+      const double two[] = {widths_.level(settings_.widening * fit.theta_2), fit.f_2, 0, 0};
       for (int k = 0; k < 4; ++k) {
         texels[static_cast<std::size_t>(4 * (kEntries * c + i) + k)] = static_cast<float>(one[k]);
         texels[static_cast<std::size_t>(4 * (kEntries * (c + 3) + i) + k)] = static_cast<float>(two[k]);

@@ -206,7 +206,7 @@ double gaussian_within(double width, double angle) {
 TransferFit fit_transfer(const SlabLight& light, TransferModel model) {
   TransferFit fit;
   fit.c_r = light.reflectance;
-  fit.sharp = model == TransferModel::unscattered ? light.unscattered + light.near_forward : 0.0;
+  fit.sharp = model == TransferModel::unscattered ? light.unscattered : 0.0;
   const Curve curve(light, fit.sharp);
   if (model == TransferModel::two_gaussians)
     fit_two(curve, fit);

@@ -15,12 +15,14 @@ vec3 blurred(vec3 direction, float level) {
   return level > 0.0 ? mix(sharp, key_scale * textureLod(key_maps, direction, 0.0).rgb, level) : sharp;
 }
 
-// Of one channel and thickness: level, f_t, c_t, c_r; and level_2, f_2, sharp.
+// Of one channel and thickness: level, f_t, c_t, c_r; and level_2, f_2, and the unscattered part if it is kept apart.
 void transfer_at(float depth, float channel, out vec4 one, out vec4 two) {
   const float kEntries = 128.0, kHalfDepth = 2.0;  // as TransferTable has them
   float x = ((kEntries - 1.0) * depth / (depth + kHalfDepth) + 0.5) / kEntries;
   one = textureLod(transfer_map, vec2(x, (channel + 0.5) / 6.0), 0.0);
-  two = transfer_model == 0 ? vec4(0.0) : textureLod(transfer_map, vec2(x, (channel + 3.5) / 6.0), 0.0);
+  two = vec4(0.0);
+  if (transfer_model == 1) two.z = exp(-depth);
+  if (transfer_model == 2) two = textureLod(transfer_map, vec2(x, (channel + 3.5) / 6.0), 0.0);
 }
 
 // The light that comes through a thickness from a direction outside.
