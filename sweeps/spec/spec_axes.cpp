@@ -169,17 +169,21 @@ class AxesReader {
     std::vector<Value> values;
     if (const toml::table* table = entry.node->as_table()) {
       const AxisRange range = read_.range(*table, entry.name);
+      const bool drawn = design_ && !range.steps;
       try {
-        if (design_ && !range.steps) {
+        if (drawn) {
           check_range(infos.front().second, range);
-          for (const double end : {range.from, range.to})
-            check_end(entry, infos, end);
-          drawn_.push_back({block_.axes.size(), std::move(infos), range, entry});
-          return {};
+        } else {
+          values = expand_range(infos.front().second, range);
         }
-        values = expand_range(infos.front().second, range);
       } catch (const InputError& e) {
         read_.fail(*entry.node, fmt::format("{}: {}", entry.name, e.what()));
+      }
+      if (drawn) {
+        for (const double end : {range.from, range.to})
+          check_end(entry, infos, end);
+        drawn_.push_back({block_.axes.size(), std::move(infos), range, entry});
+        return {};
       }
       for (Value& value : values)
         value = owners_.check(infos, *entry.node, value);

@@ -14,9 +14,10 @@ using nlohmann::json;
 
 const std::vector<std::vector<std::string>>& subcommands() {
   static const std::vector<std::vector<std::string>> all{
-      {"list"},    {"devices"},      {"describe"},        {"render"},  {"reference"},
-      {"compare"}, {"sweep", "run"}, {"sweep", "status"}, {"results"}, {"table"},
-      {"bench"},   {"plot"},         {"reproduce"}};
+      {"list"},    {"devices"},        {"describe"},         {"render"},        {"reference"},
+      {"compare"}, {"sweep", "run"},   {"sweep", "status"},  {"results"},       {"table"},
+      {"bench"},   {"plot"},           {"reproduce"},        {"slab"},          {"bundle"},
+      {"view"},    {"sweep", "merge"}, {"sweep", "compare"}, {"sweep", "tune"}, {"sweep", "slurm"}};
   return all;
 }
 

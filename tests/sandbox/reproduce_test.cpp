@@ -39,7 +39,7 @@ class ReproduceAgain : public testing::Test {
   void alter(const std::function<void(ImageFile&)>& change) const {
     ImageFile file = read_image(picture);
     change(file);
-    write_exr(picture, file);
+    write_exr(picture, file, ExrPixel::single);  // which holds what was read
   }
   void alter_json(const char* attribute, const std::function<void(json&)>& change) const {
     alter([&](ImageFile& file) {

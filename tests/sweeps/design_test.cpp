@@ -174,7 +174,8 @@ TEST(Zip, ErrorsNameThePlace) {
 TEST(Range, ReadsAsWritten) {
   const auto values = [](const std::string& range) {
     std::vector<std::string> texts;
-    for (const Value& value : spec_of("[run.axes]\nscene.density=" + range + "\n").blocks[0].axes[0].values)
+    const Spec spec = spec_of("[run.axes]\nscene.density=" + range + "\n");
+    for (const Value& value : spec.blocks[0].axes[0].values)
       texts.push_back(to_text(value));
     return texts;
   };

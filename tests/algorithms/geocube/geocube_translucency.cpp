@@ -63,7 +63,7 @@ Settings settings(const test::Values& values) {
 TEST(GeocubeTranslucency, ABallThatAbsorbsNothingVanishesInAFurnace) {
   for (const char* transfer : {"gaussian", "unscattered", "two_gaussians"}) {
     for (const glm::vec3 scattering : {glm::vec3(0.05F), glm::vec3(1.0F, 3.0F, 0.2F), glm::vec3(60.0F)}) {
-      const Image image = frame(ball(scattering), settings({{"transfer", transfer}}));
+      const Image image = frame(ball(scattering), settings({{"transfer", transfer}, {"reflections", "16"}}));
       for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
           for (int c = 0; c < 3; ++c)

@@ -164,6 +164,7 @@ TEST_F(PictureFiles, DeepPartsArePassedOver) {
     std::vector<Imf::Header> headers{header_of(window, window, {{"Z", 0.0F}}), header_of(window, window, kRgb)};
     headers[0].setName("deep");
     headers[0].setType(Imf::DEEPSCANLINE);
+    headers[0].setVersion(1);
     headers[0].compression() = Imf::ZIPS_COMPRESSION;
     headers[1].setName("flat");
     headers[1].setType(Imf::SCANLINEIMAGE);
