@@ -71,6 +71,17 @@ bool is_logarithmic(ScaleWish wish) {
   return wish == ScaleWish::log || wish == ScaleWish::log2 || wish == ScaleWish::log10;
 }
 
+/// What two rows differ in, for the message that refuses to pool them.
+std::string difference(const json& a, const json& b) {
+  const auto of_a = settings(a);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : settings(b)) {
+    const bool same = std::find(of_a.begin(), of_a.end(), std::pair(name, value)) != of_a.end();
+    if (!same) names.push_back(fmt::format("{} = {}", name, value));
+  }
+  return names.empty() ? sweeps::difference(a, b) : fmt::format("they differ in {}", fmt::join(names, ", "));
+}
+
 Color faint(const Color& color) {
   const auto mix = [](std::uint8_t v) { return static_cast<std::uint8_t>((v + 3 * 255) / 4); };
   return {mix(color.r), mix(color.g), mix(color.b)};
@@ -290,7 +301,7 @@ class RowsChart {
   [[noreturn]] void refuse_pooling(const Curve& line, double at, const json& first, const json& second) const {
     throw InputError(
         fmt::format("several rows of '{}' stand at {} = {:g}: {}; divide with --series or choose with --where",
-                    line.label, x(), at, sweeps::difference(first, second)));
+                    line.label, x(), at, difference(first, second)));
   }
 
   void set_note(const std::vector<Group>& groups, const std::vector<std::string>& own) {

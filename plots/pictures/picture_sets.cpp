@@ -71,9 +71,8 @@ void read_settings(TableReader& reader, const std::string& prefix, const std::st
     if (!value) reader.fail(key, "a setting is a boolean, a number or a string");
     if (technique.empty() && !name.starts_with("scene."))
       reader.fail(key, "the settings of a set are of its scene: scene.NAME");
-    if (!technique.empty()) {
-      if (name.starts_with("scene."))
-        reader.fail(key, "a scene is set for all pictures of a set, in the settings of the set");
+    // What a scene has is known when it is loaded, which takes its meshes.
+    if (!technique.empty() && !name.starts_with("scene.")) {
       const auto [table, bare] = owner_of(name, technique);
       if (table == nullptr) reader.fail(key, fmt::format("'{}' is no setting", name));
       at(reader, key, [&, &owner = *table, &own = bare] {

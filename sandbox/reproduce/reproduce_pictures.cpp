@@ -212,6 +212,18 @@ class Drawing {
             {"height", out_.height},
             {"parameters", parameters}};
   }
+  /// The scene as the set has it, but for what a picture sets of it.
+  std::string scene_hash_with(const Settings& own) const {
+    PictureSet changed = set_;
+    changed.settings.clear();
+    for (const Settings* settings : {&own, &set_.settings}) {
+      for (const auto& [name, value] : *settings) {
+        if (name.starts_with("scene.")) changed.settings.emplace_back(name, value);
+      }
+    }
+    if (changed.settings.size() == set_.settings.size()) return scene_hash_;
+    return sweeps::load_again(out_.scene, scene_parameters(changed, load_scene(out_.scene))).content_hash();
+  }
   static void add_settings(std::vector<std::string>& command, const Settings& settings) {
     for (const auto& [name, value] : settings)
       command.insert(command.end(), {"-s", name + "=" + value});
@@ -261,6 +273,7 @@ class Drawing {
     Wanted wanted{.command = "render", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
     wanted.recipe["technique"] = picture.technique;
     wanted.recipe["parameters"].update(parameters_of(recipe));
+    wanted.scene_hash = scene_hash_with(recipe.settings);
     std::vector<Product> products{{.path = path(picture.exr), .wanted = wanted, .file = {}, .why = {}}};
     if (!recipe.map.empty()) {
       const std::string maps = picture.name + ".maps";

@@ -171,8 +171,8 @@ TEST(PaperFigures, MistakesAreToldWithTheirPlace) {
   EXPECT_EQ(error_of("x = 'hulls'\n").substr(0, 8), "my.toml:");
   EXPECT_EQ(error_of("x = 'hulls'\ny = 'fps'\njoni = 'best'\n").substr(0, 13), "my.toml:14:1:");
   EXPECT_EQ(error_of("x = 'hulls'\ny = 'fps'\njoin = 'bets'\n").substr(0, 13), "my.toml:14:8:");
-  EXPECT_EQ(error_of("x = 'hulls'\ny = 'fsp'\n").substr(0, 13), "my.toml:13:5:");
-  EXPECT_NE(error_of("x = 'hulls'\ny = 'fsp'\n").find("'fps'"), std::string::npos);
+  EXPECT_EQ(error_of("x = 'hulls'\ny = 'flip_maen'\n").substr(0, 13), "my.toml:13:5:");
+  EXPECT_NE(error_of("x = 'hulls'\ny = 'flip_maen'\n").find("'flip_mean'"), std::string::npos);
   EXPECT_EQ(error_of("x = 'hulls'\ny = { field = 'fps', scale = 'lgo' }\n").substr(0, 14), "my.toml:13:30:");
   EXPECT_EQ(error_of("x = 'hulls'\ny = 'fps'\nbars = ['flip_mean']\n").substr(0, 13), "my.toml:14:8:");
   EXPECT_EQ(error_of("x = 'hulls'\ny = 'fps'\njoin = 'front'\n").substr(0, 8), "my.toml:");
