@@ -1,5 +1,5 @@
 // The headers of others that most files include, compiled once (PELLUCID_PRECOMPILE in CMakeLists.txt). Files include
-// what they use all the same: the compiler reads this one before any file by itself, and a build with ccache goes
+// what they use all the same: the compiler reads this one before any file by itself, and a build with the option off goes
 // without.
 #pragma once
 

@@ -109,7 +109,7 @@ TEST_F(SweepParts, AreTunedToABound) {
   const Words words{"sweep",      "tune", spec,     "--store", store("tuned.db"), "--references", store("references"),
                     "--quantity", "rmse", "--json", "--quiet", "--cost",          "slices",       "--below"};
   Words possible = words;
-  possible.push_back(std::to_string(bound * 1.000001));
+  possible.push_back(fmt::format("{}", bound * 1.000001));
   const Outcome outcome = pellucid(possible);
   ASSERT_TRUE(succeeded(outcome));
   const json answer = json::parse(outcome.out).at(0);

@@ -14,6 +14,7 @@
 #include <ImfDeepScanLineOutputPart.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIntAttribute.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
@@ -165,6 +166,7 @@ TEST_F(PictureFiles, DeepPartsArePassedOver) {
     headers[0].setName("deep");
     headers[0].setType(Imf::DEEPSCANLINE);
     headers[0].setVersion(1);
+    headers[0].insert("maxSamplesPerPixel", Imf::IntAttribute(1));
     headers[0].compression() = Imf::ZIPS_COMPRESSION;
     headers[1].setName("flat");
     headers[1].setType(Imf::SCANLINEIMAGE);
