@@ -131,9 +131,12 @@ TEST_F(Comparing, SurvivesRandomTweaking) {
   std::size_t pictures = 0;
   for (const json& event : window.events()) {
     pictures += is(event, "picture") ? 1 : 0;
-    if (is(event, "tweaks")) EXPECT_EQ(event.at("disagreements"), 0) << event.dump();
-    if (is(event, "status"))
+    if (is(event, "tweaks")) {
+      EXPECT_EQ(event.at("disagreements"), 0) << event.dump();
+    }
+    if (is(event, "status")) {
       EXPECT_EQ(event.at("words").get<std::string>().find("GL_"), std::string::npos) << event.dump();
+    }
   }
   EXPECT_GT(pictures, 2U);
 }

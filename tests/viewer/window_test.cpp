@@ -118,7 +118,9 @@ TEST_F(Window, RefusesAValueOutOfRangeInTheFieldWithTheReason) {
       window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 3; });
   // 99 was never drawn.
   for (const json& event : window.events()) {
-    if (event.at("event") == "picture") EXPECT_NE(ViewerWindow::value(event.at("recipe"), "hulls"), 99);
+    if (event.at("event") == "picture") {
+      EXPECT_NE(ViewerWindow::value(event.at("recipe"), "hulls"), 99);
+    }
   }
   EXPECT_EQ(window.place("row hulls")[3], before[3]);
 }
