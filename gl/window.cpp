@@ -1,14 +1,12 @@
 #include "gl/window.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include "gl/context.hpp"
 #include "gl/current_context.hpp"
-#include "gl/error.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -25,16 +23,8 @@ std::string glfw_reason() {
 
 }  // namespace
 
-bool display_named() {
-  const auto named = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return value != nullptr && *value != '\0';
-  };
-  return named("DISPLAY") || named("WAYLAND_DISPLAY");
-}
-
 Window::Window(const WindowOptions& options) {
-  if (glfwInit() == GLFW_FALSE) throw RuntimeError(fmt::format("there is no display: {}", glfw_reason()));
+  if (glfwInit() == GLFW_FALSE) throw NoDisplay(fmt::format("there is no display: {}", glfw_reason()));
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -47,7 +37,7 @@ Window::Window(const WindowOptions& options) {
   if (window_ == nullptr) {
     const std::string reason = glfw_reason();
     glfwTerminate();
-    throw RuntimeError(fmt::format("the display gives no window with OpenGL 4.5: {}", reason));
+    throw NoDisplay(fmt::format("the display gives no window with OpenGL 4.5: {}", reason));
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -62,6 +52,10 @@ Window::~Window() {
 
 void Window::show() {
   glfwShowWindow(window_);
+}
+
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
 }
 
 void Window::swap_buffers() {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "gl/error.hpp"
+
 struct GLFWwindow;
 
 namespace pellucid::gl {
@@ -14,8 +16,13 @@ struct WindowOptions {
   int height = 800;
 };
 
+/// There is no display, or none that gives a window with OpenGL.
+struct NoDisplay : RuntimeError {
+  using RuntimeError::RuntimeError;
+};
+
 /// A window with an OpenGL 4.5 core context through EGL, current on construction; the only user of GLFW. Its callbacks
-/// are the caller's to set, over `handle()`. Throws RuntimeError with the reason when there is no display.
+/// are the caller's to set, over `handle()`. Throws NoDisplay with the reason.
 class Window {
  public:
   explicit Window(const WindowOptions&);
@@ -25,6 +32,7 @@ class Window {
 
   GLFWwindow* handle() const { return window_; }
   void show();
+  void set_title(const std::string&);
   void swap_buffers();
   bool should_close() const;
   /// Sleeps until there is an event, at most `seconds` when given, and runs the callbacks.
@@ -37,8 +45,5 @@ class Window {
  private:
   GLFWwindow* window_ = nullptr;
 };
-
-/// True where a display is named in the environment; false means that a Window cannot open.
-bool display_named();
 
 }  // namespace pellucid::gl

@@ -42,7 +42,7 @@ TEST_F(Window, OpensEachTechniqueWithItsParameters) {
       const json event = window.wait("picture or reason", [&](const json& e) {
         return (e.at("event") == "picture" && !e.at("stale").get<bool>()) ||
                (e.at("event") == "status" &&
-                e.at("words").get<std::string>().find("draws no mirrors") != std::string::npos);
+                e.at("words").get<std::string>().find("(the picture is the last one)") != std::string::npos);
       });
       if (event.at("event") == "picture") {
         ++drawn;
@@ -66,8 +66,16 @@ TEST_F(Window, ChangesEachKindOfParameterByMouse) {
   // Real of the scene.
   window.drag("scene.density", 0.5, 0.01);
   window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "scene.density") == 0.0; });
-  // Choice: open the list, pick its second line.
-  window.click("section frame", 0.5);
+  // Choice: open the list, pick its third line.
+  window.click("coordinates");
+  window.wait("the list",
+              [](const json& event) { return event.at("event") == "places" && event.at("widgets").contains("list"); });
+  const auto list = window.place("list");
+  window.click_at(list[0] + 20, list[1] + list[3] * 5 / 6);
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "coordinates") == "single"; });
+  // Boolean.
+  window.click("filter_occlusion");
+  window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "filter_occlusion") == false; });
 }
 
 TEST_F(Window, IsChangedByTheKeyboardAlone) {
@@ -110,7 +118,9 @@ TEST_F(Window, RefusesAValueOutOfRangeInTheFieldWithTheReason) {
       window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 3; });
   // 99 was never drawn.
   for (const json& event : window.events()) {
-    if (event.at("event") == "picture") EXPECT_NE(ViewerWindow::value(event.at("recipe"), "hulls"), 99);
+    if (event.at("event") == "picture") {
+      EXPECT_NE(ViewerWindow::value(event.at("recipe"), "hulls"), 99);
+    }
   }
   EXPECT_EQ(window.place("row hulls")[3], before[3]);
 }

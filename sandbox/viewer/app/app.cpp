@@ -9,6 +9,7 @@
 
 #include "gl/context.hpp"
 #include "gl/error.hpp"
+#include "sweeps/spec/provenance.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -19,9 +20,13 @@ namespace {
 constexpr double kSaid_s = 6;
 constexpr int kStatusHeight = 22;
 
+std::string title(const ViewState& state) {
+  return fmt::format("{} of {} – Pellucid", state.technique, state.scene);
+}
+
 gl::WindowOptions window_options(const ViewerOptions& options) {
   gl::WindowOptions out;
-  out.title = fmt::format("{} of {} – Pellucid", options.state.technique, options.state.scene);
+  out.title = title(options.state);
   out.width = options.window_width > 0 ? options.window_width : std::max(900, options.state.width + 360);
   out.height = options.window_height > 0 ? options.window_height : std::max(600, options.state.height + 40);
   return out;
@@ -161,6 +166,7 @@ void App::show_pictures() {
     if (!shown_[i]) continue;
     const Picture& picture = *shown_[i];
     if (side == Side::a) {
+      window_.set_title(title(picture.state));
       times_.push_back({picture.frame_ms, glfwGetTime(), picture.pass_ms});
       if (times_.size() > kTimesKept) times_.pop_front();
       if (tev_) guarded([&] { tev_->send(picture.state.technique + " of " + picture.state.scene, picture.image); });
@@ -305,7 +311,13 @@ int App::run() {
     const bool hint_due = desk_->hint_due_s() <= 0;
     panel_dirty_ = panel_dirty_ || (hint_due && !hint_was_due);
     hint_was_due = hint_due;
-    if (panel_dirty_ || picture_dirty_) draw();
+    if (panel_dirty_ || picture_dirty_) {
+      draw();
+      if (redraws_ > 0) {
+        --redraws_;
+        picture_dirty_ = true;
+      }
+    }
   }
   if (tweaks_) {
     fmt::print(stderr, "{} tweaks, {} pictures, {} of another state than the panel's{}\n", tweaks_->steps(),
@@ -320,13 +332,12 @@ int App::run() {
 }
 
 int run_viewer(const ViewerOptions& options) {
-  if (!gl::display_named()) {
-    std::string words;
-    for (const std::string& word : render_words(options.state, "picture.png"))
-      words += (words.empty() ? "" : " ") + word;
-    throw RuntimeError(fmt::format("there is no display to open a window on; without one: {}", words));
+  try {
+    return App(options).run();
+  } catch (const gl::NoDisplay& e) {
+    const std::string command = sweeps::shell_line(render_words(options.state, "picture.png"));
+    throw RuntimeError(fmt::format("{}; without one: {}", e.what(), command));
   }
-  return App(options).run();
 }
 
 }  // namespace pellucid::sandbox

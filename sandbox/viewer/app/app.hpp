@@ -132,6 +132,7 @@ class App {
   std::vector<Action> actions_;
 
   bool panel_dirty_ = true, picture_dirty_ = true;
+  int redraws_ = 0;  ///< drawings that are still due after the window has a new size
   std::array<std::shared_ptr<const Picture>, 2> shown_{};
   int framebuffer_width_ = 0, framebuffer_height_ = 0;
   double pointer_x_ = 0, pointer_y_ = 0;  ///< framebuffer pixels
@@ -139,7 +140,7 @@ class App {
   bool drags_wipe_ = false;
 
   // comparing
-  bool blink_ = false, layer_changed_ = false;
+  bool blink_ = false, layer_changed_ = false, layer_shown_ = false;
   Layer layer_kind_ = Layer::picture;
   std::string native_map_, scale_words_;
   double scale_end_ = 1;

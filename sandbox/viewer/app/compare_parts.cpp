@@ -62,7 +62,7 @@ DisplaySettings App::effective_display() const {
   DisplaySettings out = display_;
   if (!second_.image()) out.mode = CompareMode::a;
   if (second_.image() && blink_) out.mode = std::fmod(glfwGetTime(), 1.0) < 0.5 ? CompareMode::a : CompareMode::b;
-  if (layer_kind_ != Layer::picture) {
+  if (layer_shown_) {
     out.mode = CompareMode::a;
     out.encoded = true;
     out.false_color = out.warn = false;
@@ -96,6 +96,7 @@ void App::choose_layer(const std::string& name) {
 void App::upload_pictures() {
   picture_dirty_ = panel_dirty_ = true;
   if (!shown_[0]) return;
+  layer_shown_ = layer_kind_ != Layer::picture;
   const std::shared_ptr<const Image> a(shown_[0], &shown_[0]->image);
   const auto& b = second_.image();
   if (b) pictures_.set_b(*b);
@@ -125,6 +126,7 @@ void App::upload_pictures() {
       return pictures_.set_a(plots::false_colors(it->values, scale_end_));
     }
     scale_words_ = "no map yet";
+    layer_shown_ = false;
   }
   pictures_.set_a(*a);
 }

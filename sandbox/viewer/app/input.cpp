@@ -10,6 +10,9 @@
 namespace pellucid::sandbox {
 namespace {
 
+// The first swap may still be of a buffer of the old size.
+constexpr int kRedrawsAfterResize = 2;
+
 App* app_of(GLFWwindow* window) {
   return static_cast<App*>(glfwGetWindowUserPointer(window));
 }
@@ -55,6 +58,7 @@ void App::listen() {
     app.framebuffer_width_ = std::max(1, width);
     app.framebuffer_height_ = std::max(1, height);
     app.desk_->resized();
+    app.redraws_ = kRedrawsAfterResize;
     app.panel_dirty_ = app.picture_dirty_ = true;
   });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { app_of(w)->panel_dirty_ = true; });

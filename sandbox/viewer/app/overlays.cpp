@@ -55,9 +55,11 @@ void App::paint_over(NVGcontext* ctx, float x, float y, float w, float h) {
   if (layer_kind_ != Layer::picture) paint_scale(ctx, x, y, w, h);
   if (!box_.empty()) paint_box(ctx, x, y, w, scale);
   if (graph_) paint_times(ctx, x + 8, y + h - 128, std::min(w - 16, 420.0F), 120);
-  if (!workspace_.shader_error().empty()) {
+  const std::string words = workspace_.shader_error().empty()
+                                ? workspace_.trouble()
+                                : "The last good shaders go on.\n" + workspace_.shader_error();
+  if (!words.empty()) {
     const float width = std::min(w - 16, 720.0F);
-    const std::string words = "The last good shaders go on.\n" + workspace_.shader_error();
     const float height = paint::paragraph(ctx, 0, 0, width - 16, words, paint::text(), paint::kText, false);
     paint::box(ctx, x + 8, y + 8, width, height + 16, ground());
     paint::paragraph(ctx, x + 16, y + 16, width - 16, words, paint::warning(), paint::kText, true);
@@ -154,7 +156,7 @@ void App::paint_times(NVGcontext* ctx, float x, float y, float w, float h) const
   }
   const FrameFigures& last = times_.back();
   paint::line(ctx, x + 8, y + 3, w - 16, 18,
-              fmt::format("{:.1f} ms a frame, {:.1f} frames a second shown, {:.0f} MB on the GPU", last.frame_ms,
+              fmt::format("{:.1f} ms per frame, {:.1f} frames per second shown, {:.0f} MB on the GPU", last.frame_ms,
                           frames_per_s(), static_cast<double>(shown_[0] ? shown_[0]->gpu_bytes : 0) / 1e6),
               paint::text(), paint::kSmallText);
   paint::line(ctx, x + 8, y + 20, 60, 14, fmt::format("{:.1f} ms", most), paint::dim_text(), paint::kSmallText);

@@ -97,18 +97,19 @@ void App::paint_sweep(NVGcontext* ctx, float x, float y, float w, float h) {
     paint::line(ctx, left + 2, strip + thumb_h + 2, thumb_w, 20, to_text(values[i]), paint::text(), paint::kSmallText,
                 paint::Align::center);
   }
+  const float line = strip - 26;
   if (chart_image_ != 0 && chart_width_ > 0) {
     const float height =
-        std::min({360.0F, strip - y - 2 * kMargin,
+        std::min({360.0F, line - y - 2 * kMargin,
                   (w - 2 * kMargin) * static_cast<float>(chart_height_) / static_cast<float>(chart_width_)});
     const float width = height * static_cast<float>(chart_width_) / static_cast<float>(chart_height_);
-    draw_image(ctx, chart_image_, x + w - width - kMargin, strip - height - kMargin, width, height);
+    draw_image(ctx, chart_image_, x + w - width - kMargin, line - height - kMargin, width, height);
   }
   const std::string words =
       fmt::format("{} of {} points {}   Del closes; the store {} stays", sweep_->rows().size(), values.size(),
                   sweep_->running() ? "…" : "done", sweep_->store().filename().string());
-  paint::box(ctx, x + kMargin, strip - 26, std::min(w - 16, 520.0F), 20, nvgRGBA(18, 19, 21, 230));
-  paint::line(ctx, x + kMargin + 6, strip - 26, std::min(w - 28, 508.0F), 20, words, paint::text(), paint::kSmallText);
+  paint::box(ctx, x + kMargin, line, std::min(w - 16, 520.0F), 20, nvgRGBA(18, 19, 21, 230));
+  paint::line(ctx, x + kMargin + 6, line, std::min(w - 28, 508.0F), 20, words, paint::text(), paint::kSmallText);
 }
 
 bool App::sweep_clicked(double x, double y) {

@@ -231,6 +231,15 @@ std::optional<Image> SweepHere::chart() const {
   for (plots::Series* series : {&time, &error})
     if (!series->points.empty()) chart.series.push_back(*series);
   if (chart.series.empty()) return std::nullopt;
+  // Milliseconds and errors differ by orders of magnitude, so do values that double.
+  const auto all_points = [&](auto&& holds) {
+    return std::all_of(chart.series.begin(), chart.series.end(), [&](const plots::Series& series) {
+      return std::all_of(series.points.begin(), series.points.end(), holds);
+    });
+  };
+  if (all_points([](const plots::Point& p) { return p.y > 0; })) chart.y.scale = plots::Scale::log10;
+  const bool doubles = !words && number(values_.back()) >= 16 * number(values_.front());
+  if (doubles && all_points([](const plots::Point& p) { return p.x > 0; })) chart.x.scale = plots::Scale::log2;
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("pellucid_sweep_{}.png", ::getpid());
   plots::write_chart(chart, file);

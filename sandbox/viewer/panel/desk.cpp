@@ -153,7 +153,9 @@ void Desk::character(unsigned codepoint) {
 bool Desk::keyboardEvent(int pressed, int scancode, int action, int modifiers) {
   if (popup_ != nullptr) return popup_->keyboardEvent(pressed, scancode, action, modifiers);
   const bool down = action == GLFW_PRESS || action == GLFW_REPEAT;
-  if (keys_shown_ && action == GLFW_PRESS) {
+  // Shift alone leaves the page, so that the key that opened it closes it too.
+  const bool modifier_alone = pressed >= GLFW_KEY_LEFT_SHIFT && pressed <= GLFW_KEY_RIGHT_SUPER;
+  if (keys_shown_ && action == GLFW_PRESS && !modifier_alone) {
     keys_shown_ = false;
     swallow_character_ = true;
     return true;
@@ -180,6 +182,7 @@ void Desk::open_list(nanogui::Widget* anchor, const std::vector<std::string>& it
                      std::function<void(const std::string&)> chosen) {
   if (popup_ != nullptr) return;
   popup_ = new ListPopup(this, items, current, std::move(chosen));
+  popup_->setId("list");
   popup_->place(anchor->absolutePosition(), anchor->size(), mSize);
 }
 
@@ -260,8 +263,9 @@ void Desk::draw_hint(NVGcontext* ctx) {
 
 void Desk::draw_keys(NVGcontext* ctx) const {
   const float screen_w = static_cast<float>(mSize.x()), screen_h = static_cast<float>(mSize.y());
-  const float line = 19, column = 380, margin = 14;
-  const int columns = std::max(1, std::min(2, static_cast<int>((screen_w - 2 * margin) / column)));
+  const float line = 19, margin = 14, narrow = 380, wide = 500;
+  const int columns = std::max(1, std::min(2, static_cast<int>((screen_w - 2 * margin) / narrow)));
+  const float column = std::min(wide, (screen_w - 8 - 2 * margin) / static_cast<float>(columns));
   const int per_column = (static_cast<int>(keys.size()) + columns - 1) / columns;
   const float width = std::min(screen_w - 8, static_cast<float>(columns) * column + 2 * margin);
   const float height = std::min(screen_h - 8, static_cast<float>(per_column) * line + 2 * margin);
