@@ -17,6 +17,7 @@ struct Axis {
   std::string unit{};  ///< shown in brackets behind the label; empty for pure numbers
   Scale scale = Scale::linear;
   bool from_zero = false;  ///< linear axes only: the range starts at 0
+  std::string field{};     ///< what its numbers are called in the chart's data
 };
 
 struct Color {

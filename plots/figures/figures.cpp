@@ -20,10 +20,9 @@ std::string text_of(const std::optional<double>& value) {
 }
 
 /// A column for the line, the two fields, the ends of the bar, and whether the point is joined to its neighbours.
-std::string data_of(const Chart& chart, const RowChart& wanted) {
-  const std::string x = wanted.x.field.empty() ? "x" : wanted.x.field,
-                    y = wanted.y.field.empty() ? "y" : wanted.y.field;
-  std::string csv = sweeps::csv_record({"line", x, y, y + "_low", y + "_high", "joined"});
+std::string data_of(const Chart& chart) {
+  const std::string& y = chart.y.field;
+  std::string csv = sweeps::csv_record({"line", chart.x.field, y, y + "_low", y + "_high", "joined"});
   for (const Series& series : chart.series) {
     for (const Point& point : series.points) {
       csv += sweeps::csv_record({series.name, text_of(point.x), text_of(point.y), text_of(point.low),
@@ -51,7 +50,7 @@ std::string data_of(const HeatMap& map, const PlaneMap& wanted) {
 
 Drawn draw(const RowChart& wanted, const std::vector<json>& rows, const Fields& fields) {
   const Chart chart = chart_of_rows(rows, wanted, fields);
-  return {to_svg(chart), data_of(chart, wanted)};
+  return {to_svg(chart), data_of(chart)};
 }
 
 Drawn draw(const PlaneMap& wanted, const std::vector<json>& rows, const Fields& fields) {

@@ -356,6 +356,7 @@ Axis axis_of(const AxisWish& wish, const Fields& fields) {
     axis = {quantity->label, quantity->unit, Scale::linear, quantity->from_zero};
   if (!wish.label.empty()) axis.label = wish.label;
   if (!wish.unit.empty()) axis.unit = wish.unit;
+  axis.field = wish.field;
   return axis;
 }
 

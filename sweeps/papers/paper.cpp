@@ -218,10 +218,11 @@ PaperEntry find_entry(std::string_view wanted, std::string_view section, std::st
     const PaperPointer paper = load_paper(std::string(wanted.substr(0, colon + 5)));
     return find_in(paper, wanted.substr(colon + 6), section, noun);
   }
-  std::vector<std::string> names;
-  std::vector<PaperEntry> short_named;  // "fig8" for "PAPER.fig8"
+  std::vector<std::string> names, either;  // `either`: short ones too
+  std::vector<PaperEntry> short_named;     // "fig8" for "PAPER.fig8"
   for (PaperEntry& entry : built_in_entries(section)) {
     names.push_back(entry.full_name());
+    either.insert(either.end(), {entry.full_name(), entry.name});
     if (names.back() == wanted) return entry;
     if (entry.name == wanted) short_named.push_back(std::move(entry));
   }
@@ -230,7 +231,7 @@ PaperEntry find_entry(std::string_view wanted, std::string_view section, std::st
     throw InputError(fmt::format("'{}' is a {} of several papers: {}, {}{}", wanted, noun, short_named[0].full_name(),
                                  short_named[1].full_name(), short_named.size() > 2 ? ", …" : ""));
   }
-  const std::string near = nearest_name(wanted, names);
+  const std::string near = nearest_name(wanted, either);
   throw InputError(near.empty() ? fmt::format("no {} named '{}'; there are: {}", noun, wanted, fmt::join(names, ", "))
                                 : fmt::format("no {} named '{}'; did you mean '{}'?", noun, wanted, near));
 }
