@@ -92,6 +92,7 @@ TEST_F(Window, IsChangedByTheKeyboardAlone) {
   window.wait_picture([](const json& recipe) { return ViewerWindow::value(recipe, "hulls") == 7; });
   // Back with Shift+Tab, to the technique, and the next one of the list.
   window.key("shift+Tab");
+  window.wait("the slider's focus", [](const json& e) { return e.at("event") == "focus" && e.at("id") == "hulls"; });
   window.tab_to("technique");
   window.key("Return");
   window.type("march");
