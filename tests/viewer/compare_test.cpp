@@ -160,7 +160,7 @@ TEST_F(Comparing, ToldOfALostRendererItGoesOnWithAnother) {
   const Outcome children = run({"pgrep", "-P", std::to_string(window.pid()), "-f", "view-renderer"});
   ASSERT_EQ(children.status, 0);
   ::kill(std::stoi(children.out), SIGKILL);
-  window.key("f5");
+  window.key("F5");
   window.wait_picture();
 }
 
