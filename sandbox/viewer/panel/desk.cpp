@@ -23,6 +23,16 @@ void collect(nanogui::Widget* widget, std::vector<nanogui::Widget*>& out) {
   }
 }
 
+bool begins_number(int key) {
+  return (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) || (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) ||
+         key == GLFW_KEY_MINUS || key == GLFW_KEY_PERIOD;
+}
+
+bool takes_numbers(const nanogui::Widget* widget) {
+  const auto* slider = dynamic_cast<const SliderBar*>(widget);
+  return (slider != nullptr && slider->digit) || dynamic_cast<const Field*>(widget) != nullptr;
+}
+
 }  // namespace
 
 Desk::Desk(GLFWwindow* window, float ui_scale) {
@@ -171,6 +181,7 @@ bool Desk::keyboardEvent(int pressed, int scancode, int action, int modifiers) {
       return true;
     }
   }
+  if (modifiers == 0 && begins_number(pressed) && takes_numbers(focus())) return false;  // its character comes next
   if (key && !editing() && key(pressed, action, modifiers)) {
     swallow_character_ = true;
     return true;
