@@ -17,19 +17,19 @@ float wrapped(const Image& image, int x, int y, int channel = 0) {
                   (y % image.height + image.height) % image.height)[channel];
 }
 
-// Halves a map by maxima until no side is above the most.
-Image reduced(Image heights) {
+// Halves a map by its greatest heights, or its least, until no side is above the most.
+Image reduced(Image heights, bool greatest) {
   while (std::max(heights.width, heights.height) > kMostConeTexels) {
     Image half(std::max(1, heights.width / 2), std::max(1, heights.height / 2), 1);
     for (int y = 0; y < half.height; ++y) {
       for (int x = 0; x < half.width; ++x) {
-        float most = 0;
-        for (int dy = 0; dy < 3; ++dy) {
-          for (int dx = 0; dx < 3; ++dx)
-            most = std::max(
-                most, wrapped(heights, x * heights.width / half.width + dx, y * heights.height / half.height + dy));
+        float kept = greatest ? 0.0F : 1.0F;
+        for (int i = 0; i < 16; ++i) {  // a texel more on each side, since heights are interpolated
+          const float height = wrapped(heights, x * heights.width / half.width + i % 4 - 1,
+                                       y * heights.height / half.height + i / 4 - 1);
+          kept = greatest ? std::max(kept, height) : std::min(kept, height);
         }
-        *half.at(x, y) = most;
+        *half.at(x, y) = kept;
       }
     }
     heights = std::move(half);
@@ -76,18 +76,22 @@ std::vector<Image> height_pyramid(const Image& heights) {
 }
 
 Image cone_map(const Image& given) {
-  const Image heights = reduced(given);
+  const Image heights = reduced(given, true), apexes = reduced(given, false);
+  const bool smaller = heights.width < given.width || heights.height < given.height;
   const int width = heights.width, height = heights.height;
   const float du = 1.0F / static_cast<float>(width), dv = 1.0F / static_cast<float>(height);
   Image cones(width, height, 1);
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const float apex = *heights.at(x, y);
-      float best = 1.0F;
+      const float apex = *apexes.at(x, y);
+      // Of a reduced map something as high as the greatest may stand anywhere in the texel itself.
+      const float own = *heights.at(x, y) - apex;
+      const float nearer = smaller ? 0.5F * std::min(du, dv) : 0.0F;
+      float best = smaller && own > 0.0F ? std::min(1.0F, 0.5F * nearer / own) : 1.0F;
       const auto ask = [&](int dx, int dy) {
         const float higher = wrapped(heights, x + dx, y + dy) - apex;
         if (higher <= 0.0F) return;
-        const float away = std::hypot(static_cast<float>(dx) * du, static_cast<float>(dy) * dv);
+        const float away = std::hypot(static_cast<float>(dx) * du, static_cast<float>(dy) * dv) - nearer;
         best = std::min(best, away / higher);
       };
       // Nothing rises higher than 1: rings farther away than that allows cannot narrow the cone.

@@ -13,7 +13,8 @@ namespace pellucid::translucent_relief {
 std::vector<Image> height_pyramid(const Image& heights);
 
 /// One channel: at each texel the ratio, width in the map's unit over height, of the widest empty cone that stands
-/// there on its apex (Dummer 2006), at most 1. A map with a side above `kMostConeTexels` is first reduced by maxima.
+/// there on its apex (Dummer 2006), at most 1. Of a map with a side above `kMostConeTexels` cones stand on the least
+/// heights of its blocks among the greatest of the others.
 inline constexpr int kMostConeTexels = 256;
 Image cone_map(const Image& heights);
 
