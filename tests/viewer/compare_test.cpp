@@ -154,16 +154,6 @@ TEST_F(Comparing, TellsOfAnUnreadableBookmarkFileAndKeepsIt) {
   EXPECT_NE(read_file(folder_ / "config/pellucid/bookmarks.json").find("volume_slices"), std::string::npos);
 }
 
-TEST_F(Comparing, ToldOfALostRendererItGoesOnWithAnother) {
-  ViewerWindow window({fog_, "-t", "volume_slices", "--size", "48x36"}, folder_);
-  window.wait_picture();
-  const Outcome children = run({"pgrep", "-P", std::to_string(window.pid()), "-f", "view-renderer"});
-  ASSERT_EQ(children.status, 0);
-  ::kill(std::stoi(children.out), SIGKILL);
-  window.key("F5");
-  window.wait_picture();
-}
-
 TEST_F(Comparing, IsIdleWhenNothingHappens) {
   ViewerWindow window({fog_, "-t", "volume_slices", "--size", "96x72"}, folder_);
   window.wait_picture();
