@@ -1,4 +1,5 @@
 // Frames of the technique against closed forms and against the reference.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -173,7 +174,9 @@ TEST(TranslucentRelief, NearTheReference) {
                     {"refracted_refinements", "10"}, {"reflected_refinements", "10"}, {"boundaries", "8"}};
   const Difference close = difference(frame(relief_scene(two_fields()), settings(fine)), expected);
   EXPECT_LT(close.mean, 1e-3);
-  EXPECT_LT(close.mean, coarse.mean);
+  // Both may be as near as single precision allows; the picture has something to miss all the same.
+  EXPECT_LT(close.mean, std::max(coarse.mean, 1e-6));
+  EXPECT_GT(difference(frame(relief_scene(two_fields()), settings({{"translucency", "false"}})), expected).mean, 1e-2);
 }
 
 // Boxes of their own find the same surfaces.
