@@ -101,9 +101,9 @@ cat >"$folder/work/s.toml" <<'SPEC'
 name = "slurm"
 metrics = ["rmse"]
 [timing]
-min_samples = 5
-max_samples = 5
-max_seconds = 1
+min_samples = 300
+max_samples = 300
+max_seconds = 5
 [reference]
 tolerance = 1e-2
 [[run]]
