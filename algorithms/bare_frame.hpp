@@ -19,8 +19,8 @@
 #include "gl/objects.hpp"
 #include "gl/timer.hpp"
 
-/// What a technique's frame is timed against (`pellucid bench`): the same passes with shaders that make the same
-/// fetches and blends and nothing else. A technique that has one keeps it in its folder `bench` and registry.cpp
+/// A technique's frame is timed against its bare frame (`pellucid bench`): the same passes with shaders that make the
+/// same fetches and blends and nothing else. A technique that has one keeps it in its folder `bench` and registry.cpp
 /// names it.
 namespace pellucid {
 
@@ -73,7 +73,15 @@ inline void assign_settings(ParameterRef parameters, const BareFrameRequest& req
   }
 }
 
-/// What such a frame is drawn into, of the camera's size.
+/// A technique's own parameters with the request's settings.
+template <class Parameters>
+Parameters parameters_of(const BareFrameRequest& request, const char* technique) {
+  Parameters parameters;
+  assign_settings(bind_parameters(parameters), request, technique);
+  return parameters;
+}
+
+/// The target that such a frame is drawn into; it has the camera's size.
 struct BareFrameTarget {
   BareFrameTarget(const Camera& camera, gl::Format format)
       : color(gl::Texture::make_2d("bench colour", format, camera.width, camera.height)),

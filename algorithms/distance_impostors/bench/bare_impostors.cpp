@@ -37,24 +37,18 @@ struct ShadedObjects {
   DynamicObjects objects;
 };
 
-Parameters parameters_of(const BareFrameRequest& request) {
-  Parameters parameters;
-  assign_settings(bind_parameters(parameters), request, kName);
-  return parameters;
-}
-
 /// The bare shader makes as many fetches as a search at most.
 class BareImpostors final : public BareFrame {
  public:
   explicit BareImpostors(const BareFrameRequest& request)
       : scene_(request.scene),
         camera_(request.camera),
-        maps_(map_settings(parameters_of(request))),
+        maps_(map_settings(parameters_of<Parameters>(request, kName))),
         shadow_(request.shadow),
         forward_(scene_),
         target_(camera_, request.format) {
     forward_.update_shadows(scene_, shadow_);
-    const LookupSettings lookup = lookup_settings(parameters_of(request));
+    const LookupSettings lookup = lookup_settings(parameters_of<Parameters>(request, kName));
     method_ = std::make_unique<ShadedObjects>(request, forward_, maps_, lookup, false);
     bare_ = std::make_unique<ShadedObjects>(request, forward_, maps_, lookup, true);
   }

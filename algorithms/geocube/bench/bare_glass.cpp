@@ -19,19 +19,13 @@ namespace {
 
 constexpr const char* kName = "geocube";
 
-Parameters parameters_of(const BareFrameRequest& request) {
-  Parameters parameters;
-  assign_settings(bind_parameters(parameters), request, kName);
-  return parameters;
-}
-
 /// The bare shader makes as many fetches at each pixel as the search did there. The shared passes include the entries.
 class BareGlass final : public BareFrame {
  public:
   explicit BareGlass(const BareFrameRequest& request)
       : scene_(request.scene),
         camera_(request.camera),
-        parameters_(parameters_of(request)),
+        parameters_(parameters_of<Parameters>(request, kName)),
         shadow_(request.shadow),
         forward_(scene_),
         pass_(parameters_),

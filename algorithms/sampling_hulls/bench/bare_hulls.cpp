@@ -22,12 +22,6 @@
 namespace pellucid::sampling_hulls {
 namespace {
 
-Parameters parameters_of(const BareFrameRequest& request) {
-  Parameters parameters;
-  assign_settings(bind_parameters(parameters), request, "sampling_hulls");
-  return parameters;
-}
-
 // sampling_hulls.cpp chooses the same way.
 gl::Format map_format(const Scene& scene, Coordinates choice) {
   const glm::ivec3 size = scene.volume->size;
@@ -50,7 +44,7 @@ class BareHulls final : public BareFrame {
   explicit BareHulls(const BareFrameRequest& request)
       : scene_(request.scene),
         camera_(request.camera),
-        parameters_(parameters_of(request)),
+        parameters_(parameters_of<Parameters>(request, "sampling_hulls")),
         shadow_(request.shadow),
         session_frame_(request.session_frame),
         forward_(scene_),

@@ -18,19 +18,13 @@ namespace {
 
 constexpr const char* kName = "translucent_relief";
 
-Parameters parameters_of(const BareFrameRequest& request) {
-  Parameters parameters;
-  assign_settings(bind_parameters(parameters), request, kName);
-  return parameters;
-}
-
 /// The bare shader makes as many fetches at each pixel as the technique did there.
 class BareRelief final : public BareFrame {
  public:
   explicit BareRelief(const BareFrameRequest& request)
       : scene_(request.scene),
         camera_(request.camera),
-        parameters_(parameters_of(request)),
+        parameters_(parameters_of<Parameters>(request, kName)),
         shadow_(request.shadow),
         forward_(scene_),
         pass_(parameters_),
