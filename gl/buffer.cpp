@@ -1,5 +1,11 @@
 #include <cassert>
+#include <cstddef>
+#include <initializer_list>
 #include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 

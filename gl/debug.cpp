@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cassert>
+#include <cstddef>
 #include <cstring>
+#include <string>
+#include <string_view>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>

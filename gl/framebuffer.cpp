@@ -1,4 +1,12 @@
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,8 @@
 #include "gl/program.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cstddef>
 
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>

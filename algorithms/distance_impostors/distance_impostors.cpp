@@ -1,6 +1,9 @@
 // Szirmay-Kalos et al. 2005 (references.bib: szirmaykalos2005).
 #include "algorithms/distance_impostors/distance_impostors.hpp"
 
+#include <string>
+#include <vector>
+
 #include "algorithms/distance_impostors/localized.hpp"
 
 namespace pellucid::distance_impostors {

@@ -2,6 +2,9 @@
 #include "algorithms/distance_impostors/dynamic_objects.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 

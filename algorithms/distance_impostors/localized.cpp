@@ -1,6 +1,7 @@
 #include "algorithms/distance_impostors/localized.hpp"
 
 #include <cstdio>
+#include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

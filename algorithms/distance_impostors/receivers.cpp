@@ -2,6 +2,7 @@
 #include "algorithms/distance_impostors/receivers.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <span>
 

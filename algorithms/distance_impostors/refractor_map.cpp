@@ -1,5 +1,7 @@
 #include "algorithms/distance_impostors/refractor_map.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 

@@ -1,6 +1,8 @@
 // Classical environment mapping, with proxy geometry if wanted (references.bib: blinn1976, bjorke2004).
 #include "algorithms/environment_map/environment_map.hpp"
 
+#include <string>
+
 #include "algorithms/distance_impostors/localized.hpp"
 
 namespace pellucid::environment_map {

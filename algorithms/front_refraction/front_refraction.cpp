@@ -1,6 +1,8 @@
 // Chan and Wang 2005 (references.bib: chan2005), Fig. 1a: refraction at the front side alone.
 #include "algorithms/front_refraction/front_refraction.hpp"
 
+#include <cstddef>
+#include <string>
 #include <utility>
 
 #include "algorithms/raster/forward_pass.hpp"

@@ -1,5 +1,7 @@
 #include "algorithms/geocube/cache.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,9 @@
 #include "algorithms/geocube/cube_textures.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

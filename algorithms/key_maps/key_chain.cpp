@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>

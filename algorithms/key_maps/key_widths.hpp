@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 /// Which widths of a Gaussian the levels of a chain of filtered cube maps have, and between which of them a width lies:

@@ -1,6 +1,9 @@
 #include "algorithms/raster/cube_pass.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 

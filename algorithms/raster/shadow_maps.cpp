@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
+#include <string>
 
 #include <glm/gtc/matrix_transform.hpp>
 

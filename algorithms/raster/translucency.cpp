@@ -1,6 +1,9 @@
 #include "algorithms/raster/translucency.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <glm/gtc/packing.hpp>

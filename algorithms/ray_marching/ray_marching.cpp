@@ -3,6 +3,8 @@
 
 #include <numeric>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 

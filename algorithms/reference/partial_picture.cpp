@@ -1,5 +1,10 @@
 #include "algorithms/reference/partial_picture.hpp"
 
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "algorithms/scene/files/hash.hpp"

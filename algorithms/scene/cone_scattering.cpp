@@ -1,5 +1,8 @@
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "algorithms/scene/volumes/volume_rows.hpp"

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <cstring>
 #include <span>
+#include <vector>
 
 namespace pellucid::translucent_relief {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "algorithms/scene/relief/motion.hpp"
 #include "gl/objects.hpp"

@@ -1,6 +1,7 @@
 #include "algorithms/translucent_relief/caustics.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/translucent_relief/animation.hpp"

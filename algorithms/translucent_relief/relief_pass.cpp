@@ -1,7 +1,9 @@
 #include "algorithms/translucent_relief/relief_pass.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 

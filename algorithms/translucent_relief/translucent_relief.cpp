@@ -2,7 +2,9 @@
 #include "algorithms/translucent_relief/translucent_relief.hpp"
 
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -2,6 +2,7 @@
 #include "algorithms/volume_slices/volume_slices.hpp"
 
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "algorithms/media/box_slicing.hpp"

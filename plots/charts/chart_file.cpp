@@ -1,6 +1,8 @@
 // A finished SVG document to a file, converted where PNG or PDF is asked for.
 #include <algorithm>
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

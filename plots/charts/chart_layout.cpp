@@ -1,5 +1,7 @@
 #include "plots/charts/chart_layout.hpp"
 
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "gl/error.hpp"

@@ -1,6 +1,11 @@
 #include "plots/figures/figure_reader.hpp"
 
 #include <algorithm>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <filesystem>
+#include <string_view>
 #include <tuple>
 
 #include <fmt/format.h>

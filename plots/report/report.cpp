@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 

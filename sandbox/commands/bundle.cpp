@@ -6,6 +6,10 @@
 #include <memory>
 #include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/wait.h>

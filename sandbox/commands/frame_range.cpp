@@ -1,6 +1,9 @@
 #include "sandbox/commands/frame_range.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <string_view>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,10 @@
 // pellucid slab.
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

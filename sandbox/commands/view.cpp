@@ -1,7 +1,10 @@
 // pellucid view, and the hidden renderer behind its window.
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include "sweeps/bench/ceilings.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>

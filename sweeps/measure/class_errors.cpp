@@ -2,6 +2,8 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/render_session.hpp"

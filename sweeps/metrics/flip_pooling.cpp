@@ -1,5 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include <tbb/parallel_sort.h>
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

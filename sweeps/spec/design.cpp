@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
 
 #include <boost/random/sobol.hpp>
 #include <fmt/format.h>

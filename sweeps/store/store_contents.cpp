@@ -1,5 +1,13 @@
 // The contents of a store as they stand in the file: what merging reads and writes, and the records of runs.
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "sweeps/store/store_state.hpp"
 

@@ -1,6 +1,8 @@
 #include "sweeps/store/store_schema.hpp"
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>

@@ -1,6 +1,9 @@
 #include "sweeps/tables/table_entries.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

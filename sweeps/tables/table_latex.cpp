@@ -1,7 +1,10 @@
 // Tables for LaTeX.
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 

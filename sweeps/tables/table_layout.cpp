@@ -1,5 +1,10 @@
 // A filled table as rows for the eye and for CSV.
 #include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 

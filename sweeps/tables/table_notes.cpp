@@ -1,5 +1,9 @@
 // What stands below a table: where its numbers come from and what to mind.
 #include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

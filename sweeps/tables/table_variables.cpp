@@ -1,5 +1,6 @@
 #include "sweeps/tables/table_variables.hpp"
 
+#include <cstddef>
 #include <utility>
 #include <variant>
 #include <vector>

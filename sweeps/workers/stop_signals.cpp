@@ -1,5 +1,7 @@
 #include "sweeps/workers/stop_signals.hpp"
 
+#include <cstddef>
+
 namespace pellucid::sweeps {
 namespace {
 

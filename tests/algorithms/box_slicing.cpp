@@ -1,6 +1,8 @@
 #include "algorithms/media/box_slicing.hpp"
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <random>
 #include <tuple>

@@ -1,5 +1,9 @@
 // The media techniques with cameras and lights in odd places.
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 

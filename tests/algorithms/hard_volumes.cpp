@@ -1,5 +1,10 @@
 // The media techniques at their least settings and with extreme volumes.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 

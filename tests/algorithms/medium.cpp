@@ -1,6 +1,8 @@
 // What the techniques over a medium share.
 #include "algorithms/media/medium.hpp"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "algorithms/raster/shadow_maps.hpp"

@@ -1,7 +1,10 @@
 // The laws of optics: GLSL against C++, and C++ against what is known of them.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 

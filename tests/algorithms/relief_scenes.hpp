@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "algorithms/scene/relief/patterns.hpp"
 #include "algorithms/scene/scene.hpp"

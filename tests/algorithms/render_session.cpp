@@ -1,6 +1,11 @@
 // What every technique gets from the session: supersampling, and the refusal of objects it cannot draw.
 #include "algorithms/render_session.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "gl/context.hpp"

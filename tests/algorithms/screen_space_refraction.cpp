@@ -1,5 +1,8 @@
 // Wyman's refraction against a sphere's closed form, and where it must be exact.
 #include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <utility>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,11 @@
 // GLSL functions against their C++ twins.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <random>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 

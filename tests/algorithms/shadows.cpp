@@ -1,9 +1,14 @@
 // Variance shadow maps and anti-aliased occlusion rates.
 #include "algorithms/shaders/shadows.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <random>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 

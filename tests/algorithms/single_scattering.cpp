@@ -1,8 +1,11 @@
 // One light through constant fog against the analytic single-scattering integral, which neither the shaders nor the
 // reference know: no voxels, no steps, no code of theirs.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 

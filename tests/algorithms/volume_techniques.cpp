@@ -1,5 +1,9 @@
 // Sampling hulls and slices against scenes with known answers and against the reference.
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,9 @@
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <epoxy/gl.h>
 

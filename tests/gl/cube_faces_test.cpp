@@ -1,6 +1,10 @@
 #include "gl/cube_faces.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdlib>
+#include <exception>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 

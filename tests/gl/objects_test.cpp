@@ -1,7 +1,14 @@
 #include "gl/objects.hpp"
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <span>
+#include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "gl/program.hpp"
 #include "tests/gl/gl_fixture.hpp"

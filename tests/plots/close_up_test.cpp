@@ -1,6 +1,8 @@
 // The window of the largest error, enlarged pixels, one contrast for all.
 #include "plots/pictures/close_up.hpp"
 
+#include <cstddef>
+
 #include <gtest/gtest.h>
 
 namespace pellucid::plots {

@@ -1,5 +1,9 @@
 #include "plots/figures/figures.hpp"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

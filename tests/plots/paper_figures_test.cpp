@@ -1,7 +1,13 @@
 // Figures that are data: what each shows of stored rows, and what their files must say.
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <sstream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

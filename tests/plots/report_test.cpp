@@ -1,10 +1,15 @@
 // The report: a well-formed page whose every link leads to a file beside it.
 #include "plots/report/report.hpp"
 
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,10 @@
 // What a chart shows of a store's rows: chosen, grouped, never pooled.
 #include "plots/figures/rows.hpp"
 
+#include <initializer_list>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,7 @@
 // pellucid bench.
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/sandbox/program.hpp"

@@ -1,4 +1,8 @@
 // pellucid compare: bounds that a value must keep, and the object mask.
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/sandbox/pictures.hpp"

@@ -1,6 +1,10 @@
 // pellucid compare.
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

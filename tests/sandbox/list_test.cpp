@@ -1,7 +1,10 @@
 // pellucid --help, list, describe, devices.
 #include <algorithm>
+#include <cstddef>
 #include <regex>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,8 @@
 // pellucid reference: the methods, the surfaces, the shadows' layer; what describe tells of a volume.
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "algorithms/scene/images/image.hpp"

@@ -1,5 +1,7 @@
 // pellucid reference, of mirrors and glass.
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,10 @@
 // pellucid reproduce FILE.toml: a user's own file, from its sweep to its page.
 #include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,8 @@
 // pellucid reproduce: a picture from what its file says of itself; which papers there are.
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

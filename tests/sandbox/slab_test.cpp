@@ -1,4 +1,8 @@
 // pellucid slab.
+#include <cstddef>
+#include <iterator>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/sandbox/program.hpp"

@@ -1,6 +1,8 @@
 // pellucid sweep run --shard, merge, compare, tune, slurm, references; results --where, --columns.
 #include <map>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

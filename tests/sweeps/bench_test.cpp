@@ -1,6 +1,8 @@
 // Ratios of interleaved blocks.
 #include "sweeps/bench/bench.hpp"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "sweeps/bench/bench_reference.hpp"

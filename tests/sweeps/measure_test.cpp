@@ -1,6 +1,10 @@
 #include "sweeps/measure/measure.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

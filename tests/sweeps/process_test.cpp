@@ -1,5 +1,7 @@
 #include "sweeps/workers/process.hpp"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 namespace pellucid::sweeps {

@@ -1,3 +1,6 @@
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,10 @@
 // What a reference can be: settings as JSON, the shadows' region, the picture of many slices.
 #include "sweeps/measure/reference_methods.hpp"
 
+#include <cstdint>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

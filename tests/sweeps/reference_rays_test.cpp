@@ -1,5 +1,8 @@
 // References of mirrors, metals and dielectrics: traced, sampled, cached.
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

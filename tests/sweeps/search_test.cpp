@@ -1,7 +1,10 @@
 #include "sweeps/tune/search.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,9 @@
 #include "sweeps/store/select.hpp"
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

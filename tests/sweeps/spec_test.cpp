@@ -1,5 +1,10 @@
 #include "sweeps/spec/spec.hpp"
 
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "tests/sweeps/fake_catalogue.hpp"

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <ctime>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 

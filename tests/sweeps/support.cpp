@@ -1,3 +1,6 @@
+#include <functional>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "tests/sweeps/fake_catalogue.hpp"

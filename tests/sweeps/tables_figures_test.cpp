@@ -1,6 +1,11 @@
 // Tables of the figures of sampling hulls: published frame rates, ours beside them, errors and their ratios.
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,10 @@
 // Tables and rows as text: Markdown, CSV, LaTeX, JSON.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

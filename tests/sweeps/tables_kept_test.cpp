@@ -1,10 +1,12 @@
 // Every table of the papers against what the program gave when each table was a piece of C++ of its own: from the same
 // rows the same values, in JSON, CSV and LaTeX. data/tables/rows.jsonl has rows for the papers' points with made-up
 // values, some failed, unconverged, untimed or missing; the files beside it were written by that program.
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,10 @@
 // The tables of geocube and distance impostors: published numbers, and ours from the rows of their blocks.
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

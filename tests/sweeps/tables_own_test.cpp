@@ -1,4 +1,6 @@
 // A table of a user's own file, and what its mistakes say.
+#include <string>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,9 @@
 // VTK's picture of a volume against ours and against the reference.
 #include "sweeps/bench/vtk_volume.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

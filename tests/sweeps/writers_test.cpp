@@ -1,8 +1,11 @@
 // Many processes that write one store, on file systems whose locks do and do not work.
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,14 @@
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
+#include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,10 @@
+#include <array>
+#include <cstdint>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

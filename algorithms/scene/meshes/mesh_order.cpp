@@ -1,9 +1,11 @@
 #include "algorithms/scene/meshes/mesh_order.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace pellucid {
 namespace {

@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 

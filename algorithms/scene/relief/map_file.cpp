@@ -4,7 +4,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 #include <glm/glm.hpp>
 

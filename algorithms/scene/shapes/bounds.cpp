@@ -1,5 +1,6 @@
 #include "algorithms/scene/shapes/bounds.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"

@@ -1,5 +1,6 @@
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 
 #include "algorithms/scene/shapes/procedural.hpp"
 

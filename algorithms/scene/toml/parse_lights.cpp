@@ -1,3 +1,5 @@
+#include <cstddef>
+
 #include <fmt/format.h>
 
 #include "algorithms/scene/toml/scene_description.hpp"

@@ -1,3 +1,8 @@
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include <fmt/format.h>
 
 #include "algorithms/scene/toml/scene_description.hpp"

@@ -1,4 +1,8 @@
+#include <cstddef>
+#include <filesystem>
 #include <map>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>

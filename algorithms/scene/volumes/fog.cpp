@@ -2,7 +2,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"

@@ -1,6 +1,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"

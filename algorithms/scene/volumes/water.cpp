@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"

@@ -2,6 +2,7 @@
 #include "algorithms/translucent_relief/bench/bare_relief.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>

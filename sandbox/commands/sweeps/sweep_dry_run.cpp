@@ -1,7 +1,9 @@
 #include "sandbox/commands/sweeps/sweep_dry_run.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,8 @@
 // pellucid sweep merge.
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,13 @@
 // Comparing: what with, how, and the layers of errors; live figures.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 

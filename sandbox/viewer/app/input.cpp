@@ -1,4 +1,8 @@
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "sandbox/viewer/app/app.hpp"
 #include "sandbox/viewer/camera/drag_parameter.hpp"

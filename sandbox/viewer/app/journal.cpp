@@ -1,5 +1,7 @@
 #include "sandbox/viewer/app/journal.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "gl/error.hpp"

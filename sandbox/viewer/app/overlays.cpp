@@ -1,6 +1,10 @@
 // What is painted over the picture: names of the sides, the chosen region's figures, frame times, errors of shaders.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,10 @@
 // The parts of the panel below the parameters.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "sandbox/viewer/app/app.hpp"

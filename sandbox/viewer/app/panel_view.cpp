@@ -1,6 +1,8 @@
 #include "sandbox/viewer/app/panel_view.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "gl/error.hpp"
 #include "sandbox/viewer/panel/controls.hpp"

@@ -1,6 +1,8 @@
 #include "sandbox/viewer/compare/flip_job.hpp"
 
+#include <exception>
 #include <utility>
+#include <vector>
 
 #include "gl/error.hpp"
 #include "sweeps/metrics/metrics.hpp"

@@ -1,5 +1,8 @@
 #include "sandbox/viewer/compare/second.hpp"
 
+#include <utility>
+#include <variant>
+
 #include <fmt/format.h>
 
 #include "gl/error.hpp"

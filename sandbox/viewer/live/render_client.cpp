@@ -1,6 +1,9 @@
 #include "sandbox/viewer/live/render_client.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <exception>
 #include <utility>
 
 #include <fmt/format.h>

@@ -1,10 +1,14 @@
 #include "sandbox/viewer/live/render_worker.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <exception>
 #include <iostream>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

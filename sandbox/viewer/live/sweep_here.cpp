@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <fstream>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,6 +1,8 @@
 #include "sandbox/viewer/panel/desk.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "sandbox/viewer/panel/controls.hpp"
 

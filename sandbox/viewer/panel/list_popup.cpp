@@ -1,6 +1,8 @@
 #include "sandbox/viewer/panel/list_popup.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace pellucid::sandbox {
 

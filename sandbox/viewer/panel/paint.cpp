@@ -1,3 +1,5 @@
+#include <string>
+
 #include "sandbox/viewer/panel/reachable.hpp"
 
 namespace pellucid::sandbox::paint {

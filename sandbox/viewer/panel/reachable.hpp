@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include <epoxy/gl.h>
 #include <nanogui/opengl.h>

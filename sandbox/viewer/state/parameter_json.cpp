@@ -1,5 +1,10 @@
 #include "sandbox/viewer/state/parameter_json.hpp"
 
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
 #include <nlohmann/json.hpp>
 
 #include "sweeps/spec/point_json.hpp"

@@ -1,6 +1,9 @@
 #include "sandbox/viewer/state/random_tweaks.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 

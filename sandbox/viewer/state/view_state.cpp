@@ -1,5 +1,7 @@
 #include "sandbox/viewer/state/view_state.hpp"
 
+#include <cstddef>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

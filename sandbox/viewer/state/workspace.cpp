@@ -2,7 +2,10 @@
 
 #include <array>
 #include <chrono>
+#include <span>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,10 @@
 // The hit search of distance impostors: against closed forms, and GLSL against C++.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,10 @@
 // Distance impostors and environment mapping on scenes whose pixels have closed forms, and where they are easily wrong.
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

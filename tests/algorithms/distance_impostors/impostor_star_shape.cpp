@@ -1,4 +1,8 @@
 // By how much a refractor is not star-shaped.
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "algorithms/distance_impostors/star_shape.hpp"

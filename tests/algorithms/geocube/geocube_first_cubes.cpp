@@ -1,4 +1,5 @@
 // First cubes of triangles as their vertices tell them.
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -1,7 +1,10 @@
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>

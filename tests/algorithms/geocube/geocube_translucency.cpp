@@ -1,6 +1,7 @@
 // Scattering media in the geocube: Chan and Wang 2005, Sec. 3.
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

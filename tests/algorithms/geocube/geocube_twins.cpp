@@ -1,5 +1,7 @@
 // The geocube's searches in GLSL against their C++ twins.
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,9 @@
 // Single rays at interfaces against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 

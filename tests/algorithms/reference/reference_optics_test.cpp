@@ -1,4 +1,10 @@
 // Pictures of mirrors, metals and dielectrics against closed forms.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 

@@ -1,5 +1,8 @@
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // Random walks in scattering solids against slabs, furnaces and the walks without scattering.
 #include <cmath>
+#include <cstddef>
 
 #include <gtest/gtest.h>
 

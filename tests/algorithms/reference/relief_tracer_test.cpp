@@ -2,6 +2,7 @@
 #include "algorithms/reference/relief/relief_tracer.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include <gtest/gtest.h>

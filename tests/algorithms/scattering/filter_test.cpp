@@ -1,8 +1,12 @@
 // Environments filtered on the sphere, the widths of key maps, and their cache.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,10 @@
 // Slabs against van de Hulst's tables, against photons, and against themselves.
 #include "algorithms/scattering/slab.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <vector>

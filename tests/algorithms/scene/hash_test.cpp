@@ -1,5 +1,8 @@
 #include "algorithms/scene/files/hash.hpp"
 
+#include <string>
+#include <string_view>
+
 #include <gtest/gtest.h>
 
 #include "tests/algorithms/scene/folder_test.hpp"

@@ -1,7 +1,10 @@
 #include "algorithms/scene/meshes/mesh_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,10 @@
 // Mirrors, metals and dielectrics in scene files.
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "algorithms/reference/reference.hpp"

@@ -1,5 +1,7 @@
 #include "algorithms/scene/view_text.hpp"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "gl/error.hpp"

@@ -1,7 +1,11 @@
 // Frames of the technique against closed forms and against the reference.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 

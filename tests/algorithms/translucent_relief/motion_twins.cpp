@@ -1,4 +1,9 @@
 // Waves and drops on the GPU against those of the scene.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "algorithms/translucent_relief/animation.hpp"

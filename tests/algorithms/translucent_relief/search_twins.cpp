@@ -1,5 +1,8 @@
 // The searches in GLSL: equal steps against its C++ twin, the others against exact rays.
+#include <cmath>
+#include <cstddef>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 

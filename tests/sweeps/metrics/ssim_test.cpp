@@ -1,6 +1,8 @@
 #include "sweeps/metrics/ssim.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <gtest/gtest.h>
 
