@@ -18,7 +18,7 @@
 /// and the tests read the type-erased table that is filled from it.
 namespace pellucid {
 
-/// What a new value costs.
+/// The cost of a new value.
 enum class Change {
   uniform,    ///< next frame
   program,    ///< compiled into a shader
@@ -31,7 +31,7 @@ struct Range {
   double max = 0;
 };
 
-/// What is declared beside a parameter's name and member. Designated initialisers keep it readable.
+/// The metadata declared beside a parameter's name and member. Designated initialisers keep it readable.
 struct Meta {
   std::string_view symbol{};  ///< the paper's symbol
   Range range{};              ///< inclusive; not for bool and choices

@@ -19,7 +19,7 @@ namespace pellucid {
 
 class ForwardPass;
 
-/// What a technique draws into: scene-linear RGBA and depth, of one size. Alpha is the transmittance to the background
+/// The target of a technique: scene-linear RGBA and depth, of one size. Alpha is the transmittance to the background
 /// of what was blended over it.
 struct Target {
   const gl::Texture& color;
@@ -33,7 +33,7 @@ struct NativeMap {
   std::string unit;  ///< "diagonals", "deg", "steps"; empty for 0 or 1
   std::string doc;   ///< one line, no full stop
   Image values;      ///< one channel; NaN where the pixel shows no object of the technique's, or the error has no value
-  /// Of a map of classes, what 0, 1, … stand for, in snake_case: a sweep sums up the picture's error for each.
+  /// For a map of classes, the names of 0, 1, … in snake_case: a sweep sums up the picture's error for each.
   std::vector<std::string> classes{};
 };
 

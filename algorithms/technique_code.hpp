@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// What a technique is made of, found at build time (technique_code.cmake).
+/// The sources that a technique is made of, found at build time (technique_code.cmake).
 struct TechniqueCode {
   const char* technique = nullptr;
   const char* sources_sha256 = nullptr;  ///< of its C++ and of the C++ below that it uses

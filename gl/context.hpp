@@ -15,7 +15,7 @@ struct Device {
   std::string vendor, renderer, version;
 };
 
-/// What the current context allows; sizes in texels or bytes.
+/// The current context's limits; sizes in texels or bytes.
 struct Limits {
   int max_texture_size = 0;
   int max_3d_texture_size = 0;

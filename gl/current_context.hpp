@@ -4,7 +4,8 @@
 
 #include "gl/context.hpp"
 
-/// What this thread knows of its current GL context. Private to gl/: context.cpp sets it, the wrappers read it.
+/// The state of this thread's GL context as far as it is known. Private to gl/: context.cpp sets it, the wrappers read
+/// it.
 namespace pellucid::gl::detail {
 
 /// Marks the GL context that EGL (or the window system) has just made current, with what was read from it.

@@ -13,8 +13,8 @@ namespace pellucid::gl {
 enum class Clock { gpu_query, finish };
 const char* name(Clock);  ///< "gpu_query", "finish"
 
-/// What is timed: the frame as a whole, or each pass too. Under `finish` the passes cannot overlap when timed one by
-/// one, so frames are timed with `frame` and the split is measured apart.
+/// The choice of what is timed: the frame as a whole, or each pass too. Under `finish` the passes cannot overlap when
+/// timed one by one, so frames are timed with `frame` and the split is measured apart.
 enum class Detail { off, frame, passes };
 
 struct FrameTime {
@@ -45,7 +45,7 @@ class PassTimer {
     PassTimer* timer_;
   };
 
-  /// Frames do not nest; one that an exception left open is dropped. Of unread frames the latest 256 are kept.
+  /// Frames do not nest; one that an exception left open is dropped. The latest 256 unread frames are kept.
   void begin_frame();
   [[nodiscard]] Pass pass(std::string_view name);
   void end_frame();

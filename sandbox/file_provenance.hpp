@@ -4,12 +4,12 @@
 
 #include "algorithms/scene/images/image.hpp"
 
-/// What a picture's file says of itself.
+/// A picture file's statements about itself.
 namespace pellucid::sandbox {
 
 /// Where a file comes from: version, commit, time, command line.
 nlohmann::ordered_json file_provenance();
-/// What a file must know to be made again (`pellucid reproduce FILE.exr`), and where it comes from.
+/// A file must know this to be made again (`pellucid reproduce FILE.exr`), and where it comes from.
 Attributes file_attributes(const char* command, const nlohmann::ordered_json& recipe,
                            const nlohmann::ordered_json& origin);
 

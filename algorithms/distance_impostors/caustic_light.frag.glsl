@@ -1,4 +1,4 @@
-// What a receiver's light map adds to its radiance. In the stead of a normal comes the place, see caustics.cpp.
+// The light map's addition to a receiver's radiance. In the stead of a normal comes the place, see caustics.cpp.
 in vec3 world_normal;
 in vec3 albedo;
 

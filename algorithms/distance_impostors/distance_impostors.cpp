@@ -18,7 +18,7 @@ class DistanceImpostors final : public Technique {
   }
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
-    // What the maps are made of changes with prepare() alone; when they are drawn again, at any time.
+    // The sources of the maps change with prepare() alone; the time at which they are drawn again changes freely.
     MapSettings maps = map_settings(parameters_);
     maps.layers = maps_.layers;
     localized_.render(scene, camera, forward, target, timer, maps, lookup_settings(parameters_));

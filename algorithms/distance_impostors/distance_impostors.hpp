@@ -145,7 +145,7 @@ struct Parameters {
 };
 static_assert(well_formed<Parameters>());
 
-/// What the parameters mean. A context must be current.
+/// The parameters' meaning as settings. A context must be current.
 MapSettings map_settings(const Parameters&);
 LookupSettings lookup_settings(const Parameters&);
 

@@ -69,7 +69,7 @@ class DynamicObjects {
   const Cost& cost();
   std::string reload_shaders();
 
-  /// What a program with lookup.glsl and refraction.glsl needs of an object: maps and uniforms.
+  /// The maps and uniforms that a program with lookup.glsl and refraction.glsl needs of an object.
   void bind(const Scene&, const Object&, const LookupSettings&, const gl::Program&) const;
   gl::Defines defines(SurfaceKind, const LookupSettings&) const;
 

@@ -17,7 +17,7 @@ enum class Scheme {
 };
 
 struct HitSearch {
-  int iterations = 2;  ///< NITER; −1 ends with p, 0 with l. Of the linear scheme: bisections
+  int iterations = 2;  ///< NITER; −1 ends with p, 0 with l. For the linear scheme: bisections
   Scheme scheme = Scheme::false_position;
   int steps = 64;  ///< of the linear schemes
 };

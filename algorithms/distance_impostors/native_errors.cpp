@@ -137,7 +137,7 @@ HitErrors::HitErrors(DynamicObjects& objects, const Scene& scene, const ForwardP
   const gl::Texture origin = make("ray origins"), direction = make("ray directions"), hit = make("ray hits");
   const gl::Texture depth = gl::Texture::make_2d("ray depth", gl::Format::depth32f, camera.width, camera.height);
   const gl::Framebuffer framebuffer("rays", {&origin, &direction, &hit}, &depth);
-  // What stands before the objects, without a colour.
+  // This draws the surfaces before the objects, without a colour.
   const gl::Program covers("rays' depth",
                            {"algorithms/shaders/opaque.vert.glsl", "algorithms/distance_impostors/depth.frag.glsl"});
   const InterfaceTracer tracer(scene);

@@ -20,7 +20,8 @@ enum class HitClass {
   hidden,         ///< the reference point does not see the true hit, so that the map lacks it
   unconverged     ///< on no surface
 };
-/// Of a texel in the middle of a face, which are the widest: what is farther off has another texel's light.
+/// The extent of a texel in the middle of a face, where texels are widest: a point farther off has another texel's
+/// light.
 inline constexpr double kRightTexels = 2;
 /// A search has converged where |l| / |l'| is no farther off 1 than this; from the plane of the true hit its point is
 /// off by more than twice this share of the distance, where it is on another surface.

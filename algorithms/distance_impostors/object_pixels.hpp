@@ -22,7 +22,8 @@ class ObjectPixels {
   /// The first pass's program, behind opaque.vert.glsl; `number` > 0 tells which object it is.
   const gl::Program& surfaces(const Camera&, int number);
 
-  /// What a program of the second pass reads (surface_point.glsl with FROM_PIXELS), behind fullscreen.vert.glsl.
+  /// The attributes that a program of the second pass reads (surface_point.glsl with FROM_PIXELS), behind
+  /// fullscreen.vert.glsl.
   void bind(const gl::Program&, const Camera&, int number) const;
   /// Runs the program in use where the bound framebuffer's depth is not beyond the area.
   void fill(const PixelArea&) const;

@@ -10,7 +10,7 @@ namespace pellucid::distance_impostors {
 
 struct LightMapChart;
 
-/// What caustics fall on: opaque instances whose surface has a chart, each with a layer of the light maps.
+/// The surfaces that caustics fall on: opaque instances whose surface has a chart, each with a layer of the light maps.
 class Receivers {
  public:
   static constexpr int kMost = 32;

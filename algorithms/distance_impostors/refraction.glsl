@@ -20,7 +20,7 @@ vec3 inner_hit(vec3 position, vec3 R, out vec3 outward) {
 }
 #endif
 
-// A path inside the object that has reached an interface. What leaves there goes on as `exit_direction` with the weight
+// A path inside the object that has reached an interface. Light that leaves there goes on as `exit_direction` with the weight
 // `exit_weight`; the rest is reflected and stays in the path. At the last interface nothing may stay: all that is left
 // leaves, and where it is beyond the critical angle it leaves along the reflected ray.
 struct InnerPath {

@@ -1,4 +1,4 @@
-// What the native errors compare with the reference: the ray that leaves the object, and where it is taken to hit. Of a
+// The native errors compare this with the reference: the ray that leaves the object, and where it is taken to hit. In a
 // dielectric this is the ray that leaves first.
 #include "algorithms/distance_impostors/lookup.glsl"
 #include "algorithms/distance_impostors/surface_point.glsl"

@@ -8,7 +8,7 @@
 #include "algorithms/raster/cube_pass.hpp"
 #include "algorithms/raster/translucency.hpp"
 
-/// What distance_impostors and its baseline environment_map have in common, apart from how each declares it.
+/// The settings that distance_impostors and its baseline environment_map share, apart from how each declares them.
 namespace pellucid::distance_impostors {
 
 /// Bits of a channel of the cube maps: 16 or 32.
@@ -55,7 +55,7 @@ struct LookupSettings {
   int bounces = 2;           ///< refractions
   int internal = 2;          ///< reflections inside, after which all that is left leaves
   float proxy_radius_m = 0;  ///< 0: the mean half side of the box
-  /// Of scattering media, with two refractions; none: only absorption acts.
+  /// The model for scattering media, with two refractions; none: only absorption acts.
   std::optional<TranslucencySettings> translucency{};
 };
 

@@ -1,4 +1,4 @@
-// One photon (Sec. 5). What of its Gaussian falls off the light map's border is given to the rest, so that its power stays.
+// One photon (Sec. 5). The part of its Gaussian that falls off the light map's border is given to the rest, so that its power stays.
 layout(binding = 9) uniform sampler2DArray photon_places;
 layout(binding = 10) uniform sampler2DArray photon_powers;
 uniform int map_size;

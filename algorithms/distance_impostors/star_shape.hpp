@@ -18,7 +18,7 @@ struct StarShape {
   static constexpr double kTolerance = 1e-4;  ///< of rounding and of the seams of curved patches
 };
 
-/// Of a mesh with triangles counter-clockwise from outside. `center` in the mesh's space.
+/// The mesh's triangles are counter-clockwise from outside. `center` lies in the mesh's space.
 StarShape measure_star_shape(const Mesh&, const glm::dvec3& center);
 
 /// The middle of the bounding box or the centroid of the solid, whichever sees more of the surface.

@@ -21,7 +21,7 @@ struct Narrowest {
   explicit Narrowest(double c) : cosine(c), sine(std::sqrt(std::max(0.0, 1 - c * c))) {}
 };
 
-/// What a cell covers, seen from the cone's apex: a disc's middle by its place along and across the axis, its normal in
+/// A cell's extent, seen from the cone's apex: a disc's middle by its place along and across the axis, its normal in
 /// the plane of axis and middle, and how far it reaches within the disc's plane and off it.
 struct Candidate {
   double along = 0, across = 0, radius = -1, thickness = 0;

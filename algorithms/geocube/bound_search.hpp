@@ -12,7 +12,7 @@
 #include "algorithms/geocube/cube_grid.hpp"
 
 /// Cones A and B of a geocube by branch and bound over a quadtree on each face of the cube map (the paper compares
-/// every texel with every other). What a tree's cell cannot better is left out unseen; the results are those of the
+/// every texel with every other). A tree's cell that cannot better is left out unseen; the results are those of the
 /// full comparison. A search looks at some cells of each level, whatever their number, where the surface is smooth.
 namespace pellucid::geocube {
 

@@ -26,7 +26,7 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// What follows the key and the checksum: everything but the options, which the key stands for.
+// The content after the key and the checksum: everything but the options, which the key stands for.
 std::vector<std::byte> packed(const CubeSet& set) {
   ByteWriter out;
   out.add(set.diagonal);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kTableFar = 16.0F;  // farther than any step that matters; infinity would spoil its neighbours
 
-// What the device may hold: its own memory where it tells, else half of the machine's.
+// The most that the device may hold: its own memory where it tells, else half of the machine's.
 std::size_t device_bytes() {
   if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
     GLint kib = 0;

@@ -32,7 +32,7 @@ struct CubeOptions {
 /// direction v the inside runs from `inner` to `distance`; both are 0 where the direction has no such layer.
 struct CubeLayer {
   std::vector<glm::vec4> bounds;  ///< distance d, cos θ_A, cos θ_B, R_C; a cone that is left out is a line: cosine 1
-  /// Outward unit normal N at S = O + d·v; inner distance. Of a single layer there is none: 1 where the inside begins
+  /// Outward unit normal N at S = O + d·v; inner distance. A single layer has none: 1 where the inside begins
   /// again behind S, in this direction or a neighbour's, else 0.
   std::vector<glm::vec4> planes;
   std::vector<glm::vec4> inners;  ///< outward unit normal at the inner distance and R_C there; empty for layer 0
@@ -64,7 +64,7 @@ inline constexpr std::size_t kMaxCubes = 16;
 /// surface.
 CubeSet build_cubes(const Solid&, std::span<const glm::dvec3> centers, const CubeOptions&);
 
-/// What the cube maps take on the device, for each layer two or three RGBA32F cube maps.
+/// The bytes that the cube maps take on the device, for each layer two or three RGBA32F cube maps.
 std::size_t texture_bytes(const CubeOptions&, std::size_t cubes);
 
 /// For each triangle of the solid the nearest centre that sees it (Sec. 2.3); kUnseen where there is none.

@@ -113,7 +113,7 @@ void main() {
     start = next_start(found, h);
   }
 #ifdef SCATTERING
-  // What is still inside would go on to where this search does not follow it. Its scattered part leaves somewhere, and the mean of
+  // Light that is still inside would go on to where this search does not follow it. Its scattered part leaves somewhere, and the mean of
   // the environment stands for what it sees there; the rest is left out, as in a clear medium.
   color += weight * scattered * mean_radiance;
 #endif

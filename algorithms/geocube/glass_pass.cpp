@@ -155,7 +155,7 @@ gl::Framebuffer GlassPass::entry_framebuffer(const gl::Texture& depth) const {
   return gl::Framebuffer("entries", {&entries_}, &depth);
 }
 
-// What the search needs to know of an object and of the parameters.
+// The facts about an object and the parameters that the search needs.
 void GlassPass::set_search(const GlassObject& object, const Material& material, const gl::Program& program) const {
   const auto diagonal = static_cast<float>(object.cubes()->set().diagonal);
   const float sine_c = std::min(1.0F, 1.0F / material.ior);

@@ -14,13 +14,14 @@
 
 namespace pellucid::geocube {
 
-/// What a frame fetches from textures: a search's length differs from ray to ray.
+/// The number of a frame's texture fetches: a search's length differs from ray to ray.
 struct FetchCounts {
   double pixels = 0;   ///< that show a dielectric
   double fetches = 0;  ///< of cube maps and the environment, by all of them
 };
 
-/// What draws a scene's optical objects: their cubes, programs and buffers. A context must be current for every call.
+/// The pass that draws a scene's optical objects: their cubes, programs and buffers. A context must be current for
+/// every call.
 class GlassPass {
  public:
   /// Keeps the address of the parameters.

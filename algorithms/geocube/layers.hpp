@@ -108,7 +108,7 @@ inline Exit find_exit_in_layers(const LayerMaps& maps, const glm::vec3& p, const
   const glm::vec3 o = maps.center(cube);
   float t = options.min_step;
   if (-glm::dot(h, normal) >= options.cosine_c - 1e-4F) {
-    // Of the texel's surfaces the one that is nearest to p.
+    // The texel's surface that is nearest to p is the one.
     const std::size_t texel = maps.grid().index(maps.grid().nearest(glm::dvec3(p - o)));
     const float l = glm::length(p - o);
     float least = kFar, radius = 0;

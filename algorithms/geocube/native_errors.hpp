@@ -10,7 +10,7 @@
 
 namespace pellucid::geocube {
 
-/// What a pixel's first search found, in the object's space; four floats a pixel each, rows from the bottom.
+/// The result of a pixel's first search, in the object's space; four floats per pixel each, rows from the bottom.
 struct SearchReport {
   std::vector<float> entry;        ///< point; 1 where the pixel shows the object and light enters
   std::vector<float> ray;          ///< unit direction inside; steps

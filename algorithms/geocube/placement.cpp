@@ -18,7 +18,7 @@ namespace {
 
 using Flags = std::vector<char>;  // by triangle
 
-// Of a triangle's area, what counts less the more aslant a centre sees it, since there the cube's texels lie far apart.
+// A triangle's area counts less the more aslant a centre sees it, since there the cube's texels lie far apart.
 // It decides between centres that see the same.
 constexpr double kAslant = 0.02;
 

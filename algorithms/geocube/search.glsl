@@ -160,7 +160,7 @@ Exit trace_inside(vec3 p, vec3 normal, vec3 h, int cube, float start) {
 #endif
 }
 
-// Of a ray that goes on from an exit: its last fetch told how far cone C clears the way.
+// This serves a ray that goes on from an exit: its last fetch told how far cone C clears the way.
 float next_start(Exit from, vec3 h) {
   return -dot(h, from.normal) < cosine_c - 1e-4 ? min_step : max(min_step, from.clear);
 }

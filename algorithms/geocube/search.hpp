@@ -42,7 +42,7 @@ inline float sphere_step(float f, float gamma) {
   return std::sqrt(std::max(0.0F, 1.0F - f * f * (1.0F - gamma * gamma))) - f * gamma;
 }
 
-/// What a cube map tells for a direction.
+/// A cube map's answer for a direction.
 struct CubeSample {
   glm::vec4 bounds{0.0F};  ///< d, cos θ_A, cos θ_B, R_C
   glm::vec4 plane{0.0F};   ///< N, not of unit length between texels; above 0 where the inside begins again behind S

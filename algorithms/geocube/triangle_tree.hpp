@@ -42,7 +42,7 @@ class TriangleTree {
   Nearest nearest_in_cone(const Cone&, std::uint32_t own, std::uint32_t hint = kNoTriangle) const;
 
   /// Two triangles that cross each other in more than the corners or the edge that they share; kNoTriangle twice when
-  /// there are none. Of several pairs, the one with the smallest numbers.
+  /// there are none. If several pairs tie, the one with the smallest numbers.
   std::pair<std::uint32_t, std::uint32_t> first_crossing() const;
 
   std::span<const glm::dvec3> positions() const { return positions_; }

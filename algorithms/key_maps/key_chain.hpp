@@ -27,7 +27,7 @@ struct KeyChain {
   std::vector<std::vector<std::uint16_t>> half_rgb;  ///< by level from 1 on
   double filter_s = 0;                               ///< what filtering took, also where it was read from a file
   std::size_t bytes() const;                         ///< of the RGBA16F texture
-  /// What as many key maps at full resolution would take, as the paper compares them.
+  /// The bytes that as many key maps at full resolution would take, as the paper compares them.
   std::size_t full_resolution_bytes() const;
 };
 

@@ -22,7 +22,7 @@ class SphereMap {
   SphereMap() = default;
   SphereMap(int width, int height);
   explicit SphereMap(const Image&);
-  /// Of an environment without its scale.
+  /// The map of an environment without its scale.
   SphereMap(const Environment&, int height);
 
   int width() const { return width_; }
@@ -30,7 +30,7 @@ class SphereMap {
   double polar(int y) const { return (y + 0.5) * std::numbers::pi / height_; }  ///< angle from +y
   double sine(int y) const { return sines_[static_cast<std::size_t>(y)]; }
   double area(int y) const { return areas_[static_cast<std::size_t>(y)]; }  ///< solid angle of a cell [sr]
-  /// Of the azimuth that a column stands for: 0 at −z, a quarter turn at +x.
+  /// The cosine of the azimuth that a column stands for: 0 at −z, a quarter turn at +x.
   double column_cosine(int x) const { return column_cosines_[static_cast<std::size_t>(x)]; }
   double column_sine(int x) const { return column_sines_[static_cast<std::size_t>(x)]; }
   const float* row(int y) const { return rgb_.data() + index(0, y); }

@@ -43,7 +43,7 @@ class BoxGeometry {
   int pieces() const { return static_cast<int>(pieces_.size()); }
   void draw(int piece) const;
 
-  /// Of slices: the thickness that each stands for, along an axis across them (unit, world).
+  /// The thickness that each slice stands for, along an axis across them (unit, world).
   float slab_m() const { return slab_m_; }
   const glm::vec3& slab_axis() const { return slab_axis_; }
 

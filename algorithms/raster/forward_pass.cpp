@@ -10,7 +10,7 @@
 namespace pellucid {
 namespace {
 
-// Of all cameras and lights of a frame the culled instances are kept: a point light has six.
+// The culled instances of all cameras and lights of a frame are kept: a point light has six.
 constexpr std::size_t kKeptViews = 1 + 6 * kMaxLights;
 
 // Nothing of the box can be seen when all its corners lie beyond one plane of the clip volume. The far plane is left

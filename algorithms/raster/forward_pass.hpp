@@ -88,7 +88,7 @@ class ForwardPass {
     gl::VertexArray array;
     int instance_count = 0;
   };
-  // What one camera or light sees of each mesh.
+  // The part of each mesh that one camera or light sees.
   struct Visible {
     glm::mat4 world_to_clip{1.0F};
     Objects objects = Objects::lambertian;

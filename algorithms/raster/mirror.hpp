@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// What algorithms/shaders/mirror.glsl reflects by: a mirror or a metal.
+/// The surface that algorithms/shaders/mirror.glsl reflects by: a mirror or a metal.
 void set_mirror(const gl::Program&, const Material&);
 
 }  // namespace pellucid

@@ -7,7 +7,7 @@
 
 #include "algorithms/technique.hpp"
 
-/// What techniques share that tell their errors by pixel: the map first, and of it the statistics.
+/// Techniques that tell their errors by pixel share this: the map first, and its statistics.
 namespace pellucid {
 
 /// NaN everywhere.

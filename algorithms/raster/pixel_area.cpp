@@ -38,7 +38,7 @@ std::optional<PixelArea> seen_area(const glm::mat4& box_to_clip, const Bounds& b
 void fill_area(const PixelArea& area, const gl::VertexArray& fullscreen) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(area.x, area.y, area.width, area.height);
-  // What lies beyond the object is not the object: the depth test leaves it out before any shading.
+  // A fragment beyond the object is not the object's: the depth test leaves it out before any shading.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GEQUAL);
   glDepthMask(GL_FALSE);

@@ -18,7 +18,7 @@
 /// functions.
 namespace pellucid {
 
-/// What a technique's parameter `transfer` chooses: nothing, so that of a medium absorption alone acts, or a
+/// The meaning of a technique's parameter `transfer`: nothing, so that a medium acts by its absorption alone, or a
 /// scattering::TransferModel.
 enum class Transfer { none, gaussian, unscattered, two_gaussians };
 inline constexpr std::string_view kTransfers = "none|gaussian|unscattered|two_gaussians";
@@ -38,7 +38,8 @@ class Translucency {
   /// Filters the environment, or takes it from the cache; nothing where no material of the scene scatters. The table of
   /// a material is made when it is first bound.
   void prepare(const Scene&, const TranslucencySettings&);
-  /// What a program that includes translucency.glsl must be compiled with; empty where no material scatters.
+  /// The defines with which a program that includes translucency.glsl must be compiled; empty where no material
+  /// scatters.
   static gl::Defines defines(const Scene&);
   /// Sets what translucency.glsl reads for one material, which scatters or not: textures to the units 11 and 12.
   void bind(const gl::Program&, const Scene&, const Material&);

@@ -164,7 +164,7 @@ Hit Geometry::intersect_from(const glm::dvec3& start, const Hit& from, const glm
       hit.distance = std::max(hit.distance, 0.0);
       return hit;
     }
-    // Rounding in a large triangle. What is below the normal numbers Embree takes for 0.
+    // Rounding in a large triangle. Embree takes numbers below the normal ones for 0.
     begin = std::nextafter(std::max(met_at, std::numeric_limits<float>::min()), std::numeric_limits<float>::infinity());
   }
 }

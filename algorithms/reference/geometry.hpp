@@ -29,7 +29,7 @@ struct Hit {
 /// One bounding-volume hierarchy for each mesh and one over their instances. Keeps the scene's address.
 class Geometry {
  public:
-  /// Of the instances for whose index `included` is true; without it, of all. RuntimeError if Embree cannot.
+  /// The instances for whose index `included` is true; without it, all. RuntimeError if Embree cannot.
   explicit Geometry(const Scene&, const std::function<bool(int)>& included = {});
 
   /// The nearest surface between `begin` and `end` metres along the ray; `direction` unit. The triangle is found in

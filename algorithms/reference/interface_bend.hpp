@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-/// What a smooth interface does with one ray.
+/// The effect of a smooth interface on one ray.
 namespace pellucid {
 
 struct Bend {

@@ -58,7 +58,8 @@ class InterfaceTracer {
   InterfaceTracer(InterfaceTracer&&) noexcept;
   InterfaceTracer& operator=(InterfaceTracer&&) noexcept;
 
-  /// What the pixel (x, y), rows from the top, sees through its centre: the nearest object between the clipping planes.
+  /// The object that the pixel (x, y), rows from the top, sees through its centre: the nearest between the clipping
+  /// planes.
   InterfaceHit primary(const Camera&, int x, int y) const;
 
   /// The nearest object along a ray; `direction` unit.
@@ -84,7 +85,7 @@ class InterfaceTracer {
   /// inside.
   InnerPath inside(int instance, const glm::dvec3& origin, const glm::dvec3& direction, int reflections) const;
 
-  /// Of an instance's vertices, in the world: the unit of exit-point errors [m].
+  /// The diagonal of an instance's vertices, in the world: the unit of exit-point errors [m].
   double diagonal_m(int instance) const;
 
  private:

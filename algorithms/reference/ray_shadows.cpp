@@ -108,7 +108,7 @@ class Sheet {
     if (alpha + alpha_reach < 0.0) return false;
     if (before_end_(centre) + before_end_.reach(half) < 0.0) return false;
     if (found.empty()) return true;
-    // What falls on known shadow adds nothing.
+    // A share that falls on known shadow adds nothing.
     const double least = 1.0 - w_ * (beta + beta_reach), most = 1.0 - w_ * (beta - beta_reach);
     if (least <= 0.0) return !found.complete();
     const double from = std::max(alpha - alpha_reach, 0.0) / most, upto = (alpha + alpha_reach) / least;

@@ -23,7 +23,7 @@ void Solids::enter(int instance) {
 }
 
 void Solids::leave(int instance) {
-  // Of solids that overlap, not nest, the outer one may be left first.
+  // When solids overlap and do not nest, the outer one may be left first.
   const auto end = of_.begin() + static_cast<std::ptrdiff_t>(count_);
   const auto found = std::find(of_.begin(), end, instance);
   if (found == end) return;

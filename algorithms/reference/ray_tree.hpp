@@ -43,7 +43,7 @@ struct TreeLimits {
   std::function<double(double share)> roulette;
 };
 
-/// What a tree cost and left out. Weights are of the worst channel, the root's being 1.
+/// The cost of a tree, and the light that it left out. Weights are of the worst channel, the root's being 1.
 struct TreeTally {
   double cut_weight = 0.0;      ///< of branches below `cut` or beyond `depth`
   double limited_weight = 0.0;  ///< of those that `reflections`, `entry_reflection` leave out by definition

@@ -71,7 +71,7 @@ Reference render_reference(const Scene& scene, const Camera& camera, const Surfa
         }
         pixel[3] = static_cast<float>(light.transmittance);
         if (medium) *result.mask.at(x, y) = inside_volume ? 1.0F : 0.0F;
-        // What remains when the steps are exact is the rounding to the image's 32 bits.
+        // When the steps are exact, the rest is the rounding to the image's 32 bits.
         pixel_error += light.step_error;
         error.max = std::max(error.max, pixel_error);
         error.sum += pixel_error;

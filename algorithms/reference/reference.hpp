@@ -25,13 +25,13 @@ bool has_interfaces(const Scene&);
 /// would send a ray to the wrong side of its triangle, it is bent towards the triangle's just so far that it does not.
 ///
 /// Dielectrics are closed solids, disjoint or nested; a nested one's `ior` is relative to the one around it, and the
-/// innermost alone absorbs. Of solids that overlap, each boundary acts as if nested in the order in which the ray
+/// innermost alone absorbs. Where solids overlap, each boundary acts as if nested in the order in which the ray
 /// enters. The eye may be inside of some.
 struct SurfaceOptions {
   int samples = 1;  ///< a pixel: 1 is its centre, as the raster pass sees it; more are stratified over its square
   std::uint32_t seed = 1;  ///< of their places
   /// Inside dielectrics, between entering the outermost and leaving it: 0, 1, … as the geocube's parameter of that
-  /// name. What needs more is dark, total reflection included.
+  /// name. Light that needs more is dark, total reflection included.
   int reflections = 32;
   int depth = 64;                ///< interfaces along a path
   double cut = 1e-4;             ///< a branch of less weight is left out
@@ -45,7 +45,7 @@ struct SurfaceOptions {
   std::function<void(double)> progress;  ///< share done, from any thread
 };
 
-/// What trace_surfaces() cost, and how far it is from the truth. "Weight" is a share of the light that a pixel shows,
+/// The cost of trace_surfaces(), and its distance from the truth. "Weight" is a share of the light that a pixel shows,
 /// in the channel where it is largest: times the scene's largest radiance it bounds the error.
 struct SurfaceStatistics {
   int samples = 1;
@@ -73,7 +73,7 @@ struct SurfaceLayer {
   SurfaceStatistics statistics{};
 };
 
-/// What shading needs of the surface at each pixel centre, rows from the top, as a rasteriser gives it.
+/// The surface at each pixel centre as shading needs it, rows from the top, as a rasteriser gives it.
 struct SurfacePoints {
   Image albedo;                    ///< RGB, vertex colours and tints applied
   Image normal;                    ///< unit, world, turned to the viewer; zero where nothing is hit

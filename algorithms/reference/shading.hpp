@@ -13,7 +13,7 @@
 /// Light on surfaces and in the medium, in double precision: the C++ twin of algorithms/shaders/lighting.glsl.
 namespace pellucid {
 
-/// What a light gives to a plane at a point that faces it.
+/// A light's irradiance on a plane at a point that faces it.
 struct Incidence {
   glm::dvec3 irradiance{0.0};                                 ///< at normal incidence, unshadowed
   glm::dvec3 to_light{0.0};                                   ///< unit

@@ -79,7 +79,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What each thread adds up.
+// The sums of one thread.
 struct Sums {
   TreeTally tally;
   RayTree::Scratch scratch;
@@ -183,7 +183,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
     const double per_depth = 1.0 / glm::dot(ray.direction, forward);
     ray.begin = static_cast<double>(camera.view.near_m) * per_depth;
     ray.end = static_cast<double>(camera.view.far_m) * per_depth;
-    // What the near plane cuts off is not there, and the ray may begin inside of what it cuts open.
+    // The part that the near plane cuts off is not there, and the ray may begin inside of what it cuts open.
     if (solid && geometry.occluded(ray.origin, ray.direction, 0.0, ray.begin)) {
       ray.inside = tree.solids_at(ray.origin + ray.begin * ray.direction);
       ray.unabsorbed_m = ray.begin;

@@ -33,7 +33,8 @@ class TranslucentPath {
     Hit from;  // instance null: it sets out in free space
     glm::dvec3 start{0.0}, face{0.0}, direction{0.0};
     glm::dvec3 weight{1.0};  // of the interfaces, and of chance
-    // What media leave of each channel over the distances gone, and how likely these are for each; times one factor.
+    // The media transmit this of each channel over the distances gone, and these are their likelihoods; times one
+    // factor.
     glm::dvec3 left{1.0}, likelihood{1.0};
     Solids inside;
     int events = 0, reflections = 0, channel = 0;

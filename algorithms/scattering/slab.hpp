@@ -26,14 +26,14 @@ void check_anisotropy(double anisotropy, std::string_view owner);
 void check_albedo(double albedo, std::string_view owner);
 void check_depth(double depth, std::string_view owner);
 
-/// What becomes of a unit of perpendicular flux. Directions are given by the cosine to the slab's normal, in order from
+/// The fate of a unit of perpendicular flux. Directions are given by the cosine to the slab's normal, in order from
 /// straight on to grazing. Radiance is that of scattered light alone and does not depend on the azimuth.
 struct SlabLight {
   double depth = 0;          ///< τ, the optical thickness
   double reflectance = 0;    ///< flux that comes back
   double transmittance = 1;  ///< flux that gets through, the unscattered part included
   double unscattered = 1;    ///< e^(−τ)
-  /// Of the flux that gets through, what is scattered by angles too small for the ordinates and kept with the
+  /// The part of the transmitted flux that is scattered by angles too small for the ordinates and kept with the
   /// unscattered part in the solution: 0 to rounding up to an anisotropy of 0.95.
   double near_forward = 0;
   std::vector<double> cosine;        ///< μ > 0 of the ordinates; the first is 1

@@ -17,8 +17,8 @@ constexpr int kHalvings = 12;
 constexpr double kStep = 0.5 * kPi / 180;
 constexpr int kWidths = 48;  // of the first look, equally far apart in their logarithm
 
-// Of a Gaussian in the angle, between a and b and but for the normalisation. On a step this short the sine over its
-// angle hardly varies, and what is left has a closed form, however narrow the Gaussian is.
+// The integral of a Gaussian in the angle, between a and b and but for the normalisation. On a step this short the sine
+// over its angle hardly varies, and what is left has a closed form, however narrow the Gaussian is.
 double step_energy(double width, double a, double b) {
   const double inverse = 0.5 / (width * width);
   const double ring = (std::exp(-a * a * inverse) - std::exp(-b * b * inverse)) / (2 * inverse);

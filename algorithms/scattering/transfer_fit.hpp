@@ -7,7 +7,7 @@
 /// Transfer functions as few numbers, so that a blurred environment can stand for them: Chan and Wang 2005, Sec. 3.3.
 namespace pellucid::scattering {
 
-/// What a transmission function is taken for.
+/// The family of functions that a transmission function is fitted by.
 enum class TransferModel {
   gaussian,       ///< the paper's: f_t G(θ̄) + c_t, in which G holds the unscattered part too
   unscattered,    ///< e^(−τ) apart and sharp, and f_t G(θ̄) + c_t for the scattered part
@@ -15,7 +15,7 @@ enum class TransferModel {
 };
 inline constexpr std::string_view kTransferModels = "gaussian|unscattered|two_gaussians";
 
-/// What a camera that looks straight through the slab sees is the mean of the environment, weighted by the transmitted
+/// A camera that looks straight through the slab sees the mean of the environment, weighted by the transmitted
 /// radiance times the cosine (reciprocity). Here that weight, over the sphere, is a sum of kernels that each have
 /// integral 1: a Gaussian in the angle from straight on, exp(−θ²/(2θ̄²)), one over 4π for c_t and c_r (the paper's mean
 /// colour of the whole environment), and what is not scattered at all.

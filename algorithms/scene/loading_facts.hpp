@@ -11,9 +11,9 @@ namespace pellucid {
 
 class Scene;
 
-/// What loading a scene found out beside the scene itself.
+/// The facts that loading a scene found out beside the scene itself.
 struct LoadingFacts {
-  /// What the user should know of the files read: where something was changed, left away or lost precision.
+  /// Warnings about the files read: where something was changed, left away or lost precision.
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> files;  ///< all that were read, the scene's own included
   std::optional<glm::dvec2> file_range;      ///< of a volume from a file: the values in it that became density 0 and 1

@@ -80,7 +80,7 @@ struct Light {
 };
 inline constexpr int kMaxLights = 4;
 
-/// What a density means: extinction and colour at it, linear between two points and constant beyond the outermost.
+/// The meaning of a density: extinction and colour at it, linear between two points and constant beyond the outermost.
 struct TransferPoint {
   float density = 0;
   float extinction = 0;    ///< φ [1/m], times the volume's `extinction`
@@ -181,7 +181,7 @@ struct SceneInfo {
   std::string name, title, description, module;  ///< module: the folder it lies in
 };
 
-/// What `instance` is made of; in place of it, its index among the scene's.
+/// The material of `instance`; in place of it, its index among the scene's.
 inline const Material& material_of(const Scene& scene, const Instance& instance) {
   return scene.materials[static_cast<std::size_t>(instance.material)];
 }

@@ -1,4 +1,4 @@
-// What the programs over a volume hand from the vertex to the fragment stage; the includer defines MEDIUM_RAY as `out` or
+// The values that programs over a volume hand from the vertex to the fragment stage; the includer defines MEDIUM_RAY as `out` or
 // `in`. All that is affine in the position is interpolated and all that is constant is handed on flat: a software
 // rasteriser reads a flat input with one instruction for all its pixels, and a uniform with several for each of them.
 

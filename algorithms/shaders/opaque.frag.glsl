@@ -9,7 +9,7 @@ flat in vec3 emission;
 uniform vec3 eye;
 
 #ifdef SURFACE_POINTS
-// What the reference shades by itself.
+// The reference shades this by itself.
 layout(location = 0) out vec4 point_albedo;
 layout(location = 1) out float eye_distance_m;
 layout(location = 2) out vec4 point_normal;

@@ -19,5 +19,5 @@ vec3 fresnel_metal(float cosine, vec3 n, vec3 k) {
   return ((n - 1.0) * (n - 1.0) + k2 + 4.0 * n * grazing) / ((n + 1.0) * (n + 1.0) + k2);
 }
 
-// What absorption leaves over a path [m] (Beer-Lambert).
+// The light that absorption leaves over a path [m] (Beer-Lambert).
 vec3 transmitted(vec3 absorption, float path) { return exp(-absorption * path); }

@@ -43,7 +43,7 @@ inline glm::dvec3 reflected(const glm::dvec3& direction, const glm::dvec3& norma
   return direction - 2.0 * glm::dot(direction, normal) * normal;
 }
 
-/// What absorption leaves over a path [m] (Beer–Lambert).
+/// The light that absorption leaves over a path [m] (Beer–Lambert).
 inline glm::dvec3 transmitted(const glm::dvec3& absorption, double path_m) {
   return glm::exp(-absorption * path_m);
 }

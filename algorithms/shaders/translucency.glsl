@@ -1,4 +1,4 @@
-// What a scattering medium makes of the environment behind it: Chan and Wang 2005, Sec. 3.3. Who includes it gives the unblurred
+// A scattering medium blurs the environment behind it: Chan and Wang 2005, Sec. 3.3. Who includes it gives the unblurred
 // light as `vec3 sharp_radiance(vec3 direction)`. Compiled with the defines of Translucency (raster/translucency.hpp), which
 // binds what it reads.
 layout(binding = 11) uniform samplerCube key_maps;   // mip level l is level l + 1 of the chain: level 0 is the environment itself
@@ -15,7 +15,7 @@ vec3 blurred(vec3 direction, float level) {
   return level > 0.0 ? mix(sharp, key_scale * textureLod(key_maps, direction, 0.0).rgb, level) : sharp;
 }
 
-// Of one channel and thickness: level, f_t, c_t, c_r; and level_2, f_2, and the unscattered part if it is kept apart.
+// For one channel and thickness: level, f_t, c_t, c_r; and level_2, f_2, and the unscattered part if it is kept apart.
 void transfer_at(float depth, float channel, out vec4 one, out vec4 two) {
   const float kEntries = 128.0, kHalfDepth = 2.0;  // as TransferTable has them
   float x = ((kEntries - 1.0) * depth / (depth + kHalfDepth) + 0.5) / kEntries;

@@ -1,4 +1,4 @@
-// What was blurred, to be added to the picture.
+// The blurred light, to be added to the picture.
 layout(binding = 0) uniform sampler2D blurred;
 uniform vec2 pixels;  // of the picture
 uniform float strength;

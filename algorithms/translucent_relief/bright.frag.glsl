@@ -1,4 +1,4 @@
-// What is brighter than the display shows, of a block of pixels (Timonen, Sec. 4): separated with a square root, so that
+// The light beyond what the display shows, from a block of pixels (Timonen, Sec. 4): separated with a square root, so that
 // the sun does not drown the picture.
 layout(binding = 0) uniform sampler2D picture;
 uniform int block;  // pixels along a side

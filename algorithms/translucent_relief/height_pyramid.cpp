@@ -85,7 +85,7 @@ Image cone_map(const Image& given) {
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const float apex = *apexes.at(x, y);
-      // Of a reduced map something as high as the greatest may stand anywhere in the texel itself.
+      // In a reduced map something as high as the greatest may stand anywhere in the texel itself.
       const float own = *heights.at(x, y) - apex;
       const float nearer = smaller ? 0.5F * std::min(du, dv) : 0.0F;
       float best = smaller && own > 0.0F ? std::min(1.0F, 0.5F * nearer / own) : 1.0F;

@@ -4,7 +4,7 @@
 
 #include "algorithms/scene/images/image.hpp"
 
-/// What accelerated searches precompute of a height field.
+/// The data that accelerated searches precompute of a height field.
 namespace pellucid::translucent_relief {
 
 /// Two channels, the greatest and the least height: first of the cells between four neighbouring texel centres, cell
@@ -13,7 +13,7 @@ namespace pellucid::translucent_relief {
 std::vector<Image> height_pyramid(const Image& heights);
 
 /// One channel: at each texel the ratio, width in the map's unit over height, of the widest empty cone that stands
-/// there on its apex (Dummer 2006), at most 1. Of a map with a side above `kMostConeTexels` cones stand on the least
+/// there on its apex (Dummer 2006), at most 1. In a map with a side above `kMostConeTexels` cones stand on the least
 /// heights of its blocks among the greatest of the others.
 inline constexpr int kMostConeTexels = 256;
 Image cone_map(const Image& heights);

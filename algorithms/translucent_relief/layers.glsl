@@ -14,7 +14,7 @@ layout(binding = 6) uniform sampler2D medium_normals;
 uniform vec2 medium_range;
 uniform bool medium_normal_map;
 #endif
-// Of the search: greatest and least heights by level, or empty cones.
+// The search reads these: greatest and least heights by level, or empty cones.
 layout(binding = 8) uniform sampler2D solid_acceleration;
 layout(binding = 9) uniform sampler2D medium_acceleration;
 uniform vec2 tiling;

@@ -10,7 +10,7 @@
 
 namespace pellucid::translucent_relief {
 
-/// What a frame's view rays found, four floats a pixel each, rows from the bottom.
+/// The result of a frame's view rays, four floats per pixel each, rows from the bottom.
 struct SearchReport {
   std::vector<float> start;  ///< the mesh's uv; 0: nothing met, 1: the solid, 2: the medium; distance from the mesh [m]
   std::vector<float> ray;    ///< direction in the frame, and 1 where the pixel shows the mesh; step [m]

@@ -17,7 +17,7 @@ float behind_objects(vec3 world, out vec2 at) {
   return clip.w - clip_planes.x * clip_planes.y / (clip_planes.y - depth * (clip_planes.y - clip_planes.x));
 }
 
-// Where a ray of that length passes behind an object, and its radiance there; negative where it does not. What it passes
+// Where a ray of that length passes behind an object, and its radiance there; negative where it does not. A surface that it passes
 // far behind is not thick enough to be met.
 float meet_object(vec3 origin, vec3 direction, float reach, out vec3 color) {
   float stride = reach / float(object_steps), before = 0.0;

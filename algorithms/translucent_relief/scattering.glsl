@@ -11,7 +11,7 @@ vec4 transfer_row(float depth, int row) {
   return mix(texelFetch(transfer_table, ivec2(i, row), 0), texelFetch(transfer_table, ivec2(i + 1, row), 0), at - float(i));
 }
 
-// What gets through, scattered or not.
+// The light that gets through, scattered or not.
 vec3 scattered_transmittance(float path) {
   vec3 share;
   for (int c = 0; c < 3; ++c) {
@@ -21,7 +21,7 @@ vec3 scattered_transmittance(float path) {
   return share;
 }
 
-// What comes back of light that arrives.
+// The share of arriving light that comes back.
 vec3 scattered_reflectance(float path) {
   return vec3(transfer_row(extinction.r * path, 3).r, transfer_row(extinction.g * path, 3).g,
               transfer_row(extinction.b * path, 3).b);

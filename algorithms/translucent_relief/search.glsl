@@ -30,7 +30,7 @@ vec2 clip_ray(Ray ray, float low, float high, bool cut, float from) {
 
 // The first crossing in `range` of a ray that begins on `side` of the layer (1: above it, −1: below): a linear search, then
 // halving (Policarpo et al. 2005), then the chord of the last bracket (Tatarchuk 2006). Negative where there is none.
-// What is less than `bias` metres beyond counts as on it, for the sake of rays that start there. `taken` counts the heights
+// A point less than `bias` metres beyond counts as on it, for the sake of rays that start there. `taken` counts the heights
 // that were asked for.
 float linear_crossing(int layer, Ray ray, vec2 range, float side, float bias, int steps, int refinements,
                       inout float taken) {

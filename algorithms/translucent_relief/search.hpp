@@ -15,7 +15,7 @@ struct Crossing {
 
 /// The first crossing in `range` of a ray that begins on `side` of the layer (1: above it, −1: below): a linear search,
 /// then halving (Policarpo et al. 2005), then the chord of the last bracket (Tatarchuk 2006). `above(t)`: the height of
-/// the ray's point over the layer. What is less than `bias` metres beyond counts as on it, for the sake of rays that
+/// the ray's point over the layer. A point less than `bias` metres beyond counts as on it, for the sake of rays that
 /// start there.
 template <class Above>
 Crossing linear_crossing(Above above, const glm::vec2& range, float side, float bias, int steps, int refinements) {

@@ -52,7 +52,7 @@ void check_value(const Chart& chart, const Series& series, std::size_t i, const 
   }
 }
 
-/// What the axes have to show. An interval's end that a logarithmic axis cannot show does not widen it.
+/// The range that the axes have to show. An interval's end that a logarithmic axis cannot show does not widen it.
 void extents(const Chart& chart, Extent& x, Extent& y) {
   for (const Series& series : chart.series) {
     for (std::size_t i = 0; i < series.points.size(); ++i) {

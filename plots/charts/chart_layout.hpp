@@ -5,7 +5,7 @@
 #include "plots/charts/style.hpp"
 #include "plots/charts/svg_scene.hpp"
 
-/// What line charts and heat maps share: type sizes, margins, title, note and axis titles.
+/// Line charts and heat maps share this: type sizes, margins, title, note and axis titles.
 namespace pellucid::plots {
 
 inline const TextStyle kTitleText{14, kInk, true, Align::low, Align::high, false};

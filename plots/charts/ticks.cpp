@@ -53,7 +53,7 @@ AxisLayout linear_axis(const Axis& axis, double low, double high, int wanted) {
     low = std::min(low, 0.0);
     high = std::max(high, 0.0);
   }
-  // What differs by rounding alone is one value; so is what no label could tell apart.
+  // Values that differ by rounding alone are one value; so are those that no label could tell apart.
   const double size = std::max(std::abs(low), std::abs(high));
   if (high - low <= std::max(1e-9 * size, kLeastShown)) {
     const double around = size <= kLeastShown ? 1 : size * 0.5;

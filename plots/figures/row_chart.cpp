@@ -75,7 +75,7 @@ bool is_logarithmic(ScaleWish wish) {
   return wish == ScaleWish::log || wish == ScaleWish::log2 || wish == ScaleWish::log10;
 }
 
-/// What two rows differ in, for the message that refuses to pool them.
+/// The difference between two rows, for the message that refuses to pool them.
 std::string difference(const json& a, const json& b) {
   const auto of_a = settings(a);
   std::vector<std::string> names;

@@ -21,7 +21,7 @@ enum class ScaleWish {
 /// Base 10 when positive values span more than a factor of ten.
 Scale scale_for(double least, double greatest);
 
-/// What an axis shows, and how.
+/// The quantity that an axis shows, and how.
 struct AxisWish {
   std::string field{};          ///< of the rows, or a quantity that is worked out from them
   std::string label{}, unit{};  ///< empty: those of the quantity, else the field's name

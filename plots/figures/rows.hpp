@@ -22,7 +22,7 @@ using sweeps::Quantity;
 using sweeps::settings;
 using sweeps::value_text;
 
-/// What a chart can draw of a row: its fields, and the quantities that are worked out from them.
+/// The values that a chart can draw of a row: its fields, and the quantities that are worked out from them.
 class Fields {
  public:
   /// With the quantities of this paper besides those of all; it must outlive this.
@@ -30,7 +30,7 @@ class Fields {
   /// Null for a parameter.
   const Quantity* find(std::string_view field) const;
   std::optional<double> value(const nlohmann::json& row, const std::string& field) const;
-  /// What a row must hold for `field`: itself, or all that its expressions use. Empty for no field.
+  /// The fields that a row must hold for `field`: itself, or all that its expressions use. Empty for no field.
   std::vector<std::string> sources_of(const std::string& field) const;
   /// Whether it is measured by timing frames.
   bool is_time(const std::string& field) const;
@@ -81,7 +81,7 @@ std::string usual_note(const Rows&, std::span<const std::string> own);
 /// Throws InputError when two rows of one group agree in all of `own` too: measurements are never pooled.
 void check_distinct(const std::vector<Group>&, std::span<const std::string> own);
 
-/// What a chart's note says of where its rows come from: scene, size, device, clock if `timed`, and how many rows were
+/// A chart's note says where its rows come from: scene, size, device, clock if `timed`, and how many rows were
 /// left out.
 std::string provenance_note(const Rows&, bool timed);
 

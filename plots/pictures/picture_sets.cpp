@@ -73,7 +73,7 @@ void read_settings(TableReader& reader, const std::string& prefix, const std::st
     if (!value) reader.fail(key, "a setting is a boolean, a number or a string");
     if (technique.empty() && !name.starts_with("scene."))
       reader.fail(key, "the settings of a set are of its scene: scene.NAME");
-    // What a scene has is known when it is loaded, which takes its meshes.
+    // A scene's contents are known when it is loaded, which takes its meshes.
     if (!technique.empty() && !name.starts_with("scene.")) {
       const auto [table, bare] = owner_of(name, technique);
       if (table == nullptr) reader.fail(key, fmt::format("'{}' is no setting", name));

@@ -8,7 +8,7 @@
 #include "plots/pictures/close_up.hpp"
 #include "sweeps/papers/paper.hpp"
 
-/// The pictures of papers: [[pictures]] of a paper's file (sweeps/README.md). What draws them is sandbox/reproduce.
+/// The pictures of papers: [[pictures]] of a paper's file (sweeps/README.md). sandbox/reproduce draws them.
 namespace pellucid::plots {
 
 /// Names and values as -s takes them, in the order of the file.

@@ -29,7 +29,7 @@ void add_reproduce(cli::App& root, std::vector<Command>&);  ///< reproduce
 void add_view(cli::App& root, std::vector<Command>&);       ///< view, and its hidden renderer
 void add_bundle(cli::App& root, std::vector<Command>&);     ///< bundle
 
-// Of `sweep`, called by add_sweep.
+// The commands below `sweep`, called by add_sweep.
 void add_sweep_merge(cli::App& sweep, std::vector<Command>&);      ///< merge
 void add_sweep_questions(cli::App& sweep, std::vector<Command>&);  ///< compare, tune
 void add_sweep_slurm(cli::App& sweep, std::vector<Command>&);      ///< slurm

@@ -8,7 +8,8 @@
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/command_line.hpp"
 
-/// What render and reference share: which picture of which scene, where it goes, and what its file says of itself.
+/// The options that render and reference share: which picture of which scene, where it goes, and what its file says of
+/// itself.
 namespace pellucid::sandbox {
 
 struct FrameOptions {

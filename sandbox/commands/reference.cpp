@@ -98,7 +98,7 @@ ordered_json distance(const Image& exact, const Image& slices) {
   return {{"to_exact_flip_mean", result.at("flip_mean")}, {"to_exact_rmse", result.at("rmse")}};
 }
 
-/// What surfaces from rays cost, and their errors.
+/// The cost of surfaces from rays, and their errors.
 ordered_json statistics_json(const SurfaceStatistics& s) {
   return {{"standard_error_max", s.standard_error_max},
           {"standard_error_mean", s.standard_error_mean},
@@ -141,7 +141,7 @@ int reference(const Options& options) {
   origin["scene_hash"] = loaded.content_hash();
   SurfaceLayer surfaces;
   Image slices;
-  // What draws takes the scene, with its parameters as they are; the rest uses it there.
+  // The drawing part takes the scene, with its parameters as they are; the rest uses it there.
   std::optional<gl::Context> context;
   std::optional<RenderSession> session;
   if (draws || settings.surfaces == sweeps::ReferenceSurfaces::raster) {

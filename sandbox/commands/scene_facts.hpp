@@ -7,7 +7,7 @@
 
 #include "algorithms/scene/scene.hpp"
 
-/// What several sub-commands tell of a scene.
+/// The facts that several sub-commands tell of a scene.
 namespace pellucid::sandbox {
 
 /// The scene's volume in numbers: `voxels`, `voxel_spacing_m`, `extinction_per_m`, and `file_range`, the values in its

@@ -91,8 +91,9 @@ void add_slab(cli::App& root, std::vector<Command>& commands) {
       ->required();
   app->add_option("--albedo", options->medium.albedo, "Share of the extinction that is scattering, from 0 to 1")
       ->required();
-  app->add_option("--model", options->model,
-                  fmt::format("What the transmission is fitted by: {} (default: gaussian)", kTransferModels))
+  app->add_option(
+         "--model", options->model,
+         fmt::format("The functions that the transmission is fitted by: {} (default: gaussian)", kTransferModels))
       ->check(cli::IsMember({"gaussian", "unscattered", "two_gaussians"}));
   app->add_flag("--json", options->json, "Print JSON");
   app->footer(

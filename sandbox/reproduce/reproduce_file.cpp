@@ -114,7 +114,7 @@ Difference difference(const ImageFile& before, const ImageFile& now, const std::
   return out;
 }
 
-// What differs between then and now besides the pixels, each as one line.
+// The differences between then and now besides the pixels, each as one line.
 std::vector<std::string> changes(const json& then, const json& now) {
   std::vector<std::string> out;
   for (const char* field : {"device", "driver", "version", "commit", "scene_hash"}) {

@@ -47,7 +47,7 @@ json attribute(const ImageFile& file, const char* name) {
   return found == file.attributes.end() ? json() : json::parse(found->second, nullptr, false);
 }
 
-/// What a file must say of itself to be kept.
+/// A file must say this of itself to be kept.
 struct Wanted {
   std::string command;
   json recipe;  ///< these fields, and of its parameters these

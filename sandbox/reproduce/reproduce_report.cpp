@@ -193,7 +193,7 @@ void add_native_maps(const PicturesOutcome& outcome, ReportSection& section) {
     map.commands = {{"Draw it again", picture.repeat}};
     maps.images.push_back(std::move(map));
   }
-  section.blocks.emplace_back(Heading{"What the technique finds beside the truth"});
+  section.blocks.emplace_back(Heading{"The technique's own findings beside the truth"});
   section.blocks.emplace_back(Paragraph{
       fmt::format("{}: {}{}. Black is 0, pale yellow is {:.6g} and more, grey has no value.", set.native_name,
                   set.native_doc, set.native_unit.empty() ? "" : ", in " + set.native_unit, set.native_scale)});
@@ -303,7 +303,7 @@ ReportTable trouble_table(const PaperOutcome& outcome) {
 void add_paper(const PaperOutcome& outcome, bool alone, Report& report) {
   const std::string& id = outcome.paper->name;
   const std::string prefix = alone ? "" : id + ": ";
-  ReportSection run{id, alone ? "What was run" : outcome.paper->title, {}};
+  ReportSection run{id, alone ? "The run" : outcome.paper->title, {}};
   if (outcome.preview) {
     run.blocks.emplace_back(Paragraph{
         "A preview: fewer points, fewer timed frames and in places smaller pictures than the full run, which is the "

@@ -45,7 +45,7 @@ struct PicturesOutcome {
   std::string missing;  ///< why there are none; empty when they are drawn
 };
 
-/// What came of one paper.
+/// The outcome of one paper.
 struct PaperOutcome {
   sweeps::PaperPointer paper;
   bool preview = false;

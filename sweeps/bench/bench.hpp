@@ -18,7 +18,7 @@ class Context;
 }
 }  // namespace pellucid
 
-/// What a technique's frame costs beside the least that its texture fetches and blends could cost: a bare shader over
+/// The cost of a technique's frame beside the least that its texture fetches and blends could cost: a bare shader over
 /// the same pixels, timed on the same device in the same run.
 namespace pellucid::sweeps {
 
@@ -31,8 +31,8 @@ struct BenchRequest {
   bool reference = true;                                      ///< time the reference's tracing too, where there is one
 };
 
-/// Of blocks that alternate between the subjects, so that a drift of the clock rate reaches them all: the median over
-/// the blocks of a ratio of the blocks' medians, and its bootstrap interval.
+/// The statistics of blocks that alternate between the subjects, so that a drift of the clock rate reaches them all:
+/// the median over the blocks of a ratio of the blocks' medians, and its bootstrap interval.
 struct BenchRatio {
   double median = 0;
   Interval ci95;
@@ -68,7 +68,7 @@ struct BenchResult {
 /// every parameter with its value.
 BenchResult bench(const TechniqueInfo&, const BenchRequest&, nlohmann::json& recipe);
 
-/// What the technique is timed against. Throws InputError with the names of those that have one.
+/// The bare frame that the technique is timed against. Throws InputError with the names of those that have one.
 const BareFrameInfo& bare_frame_of(const TechniqueInfo&);
 
 /// A technique of volumes against VTK's GPU ray caster on the same volume and view, alone in a black world and white

@@ -11,7 +11,7 @@ namespace pellucid::sweeps {
 /// Traces the picture that a frame approximates and keeps the times.
 class ReferenceTracer {
  public:
-  /// Keeps the addresses of scene and camera. Of `options`, `samples` is taken as 1 and caustics are left out.
+  /// Keeps the addresses of scene and camera. In `options`, `samples` is taken as 1 and caustics are left out.
   ReferenceTracer(const Scene&, const Camera&, SurfaceOptions options);
 
   /// One picture. Throws what trace_surfaces() does.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-/// What the device can do at most, by the plainest programs: the ceilings under which every technique stays.
+/// The device's best rates, by the plainest programs: the ceilings under which every technique stays.
 namespace pellucid::sweeps {
 
 struct Ceiling {

@@ -19,7 +19,7 @@ class VtkVolume {
   VtkVolume(const VtkVolume&) = delete;
   VtkVolume& operator=(const VtkVolume&) = delete;
 
-  /// Of two points on a ray.
+  /// The distance between two points on a ray.
   void set_sample_distance(double metres);
   void render();
   Image read_color() const;  ///< RGB, rows from the top

@@ -39,7 +39,7 @@ std::string heading(const SlurmOptions& o, const std::string& job, bool array, b
   return text;
 }
 
-/// What all scripts name.
+/// The names that all scripts use.
 std::string names(const SlurmOptions& o) {
   return fmt::format("program={}\nspec={}\nfolder={}\nreferences={}\n", shell_word(o.program), shell_word(o.spec),
                      shell_word(o.folder.string()), shell_word(o.references.string()));

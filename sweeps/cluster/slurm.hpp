@@ -24,8 +24,8 @@ struct SlurmOptions {
 };
 
 /// The scripts by name: references.sbatch, quality.sbatch (untimed points; they may share nodes), timing.sbatch (timed
-/// points, each on a node of its own), merge.sbatch and submit.sh, which submits them with their dependencies. What is
-/// not needed is not there.
+/// points, each on a node of its own), merge.sbatch and submit.sh, which submits them with their dependencies. Whatever
+/// is not needed is not there.
 std::map<std::string, std::string> slurm_scripts(const SlurmOptions&);
 
 /// Writes them, and the folders that they need. Throws RuntimeError.

@@ -18,7 +18,7 @@
 
 namespace pellucid::sweeps {
 
-/// What a worker learns of a point: the measured part of its row, and every frame time.
+/// A worker's result for a point: the measured part of its row, and every frame time.
 struct Measurement {
   nlohmann::json row = nlohmann::json::object();
   std::vector<double> frame_ms_samples;

@@ -29,7 +29,7 @@ constexpr std::size_t kMemoryBytes = std::size_t{256} << 20;
 /// The reference, its mask and what FLIP keeps of it.
 constexpr std::size_t kBytesPerPixel = 128;
 
-/// What a file keeps of SurfaceStatistics, besides its counts.
+/// The part of SurfaceStatistics that a file keeps, besides its counts.
 constexpr std::pair<const char*, double SurfaceStatistics::*> kStatistics[] = {
     {"standard_error_max", &SurfaceStatistics::standard_error_max},
     {"standard_error_mean", &SurfaceStatistics::standard_error_mean},
@@ -58,7 +58,7 @@ std::string pixels_hash(const Reference& reference) {
   return hash.hex();
 }
 
-/// What determines the exact reference's pixels, but for the surfaces, which are hashed as they are.
+/// The exact reference's pixels depend on this, but for the surfaces, which are hashed as they are.
 std::string key_of(RenderSession& session, const Point& point) {
   const Camera& camera = session.camera();
   const View& v = camera.view;
@@ -70,7 +70,7 @@ std::string key_of(RenderSession& session, const Point& point) {
   return hash.hex();
 }
 
-/// What determines a CachedReference: the settings, and of the point what a drawn part of it depends on.
+/// A CachedReference depends on this: the settings, and of the point what a drawn part of it depends on.
 std::string memory_key_of(RenderSession& session, const Point& point) {
   std::string key = key_of(session, point) + to_json(point.reference).dump();
   for (const std::string& metric : point.metrics)

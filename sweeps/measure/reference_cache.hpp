@@ -36,8 +36,9 @@ class ReferenceCache {
   using Progress = std::function<void(double share)>;
   explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// For the session's scene, view, size and shadow maps at this moment, which are the point's. What is not traced but
-  /// drawn (the method slices, the surfaces of the forward pass) is drawn anew in each process: it is of the device.
+  /// For the session's scene, view, size and shadow maps at this moment, which are the point's. The part that is not
+  /// traced but drawn (the method slices, the surfaces of the forward pass) is drawn anew in each process: it is of the
+  /// device.
   std::shared_ptr<const CachedReference> get(RenderSession&, const Point&, const Progress&);
 
   const std::filesystem::path& folder() const { return folder_; }

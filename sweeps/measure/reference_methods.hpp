@@ -8,8 +8,8 @@
 #include "algorithms/render_session.hpp"
 #include "sweeps/spec/reference_settings.hpp"
 
-/// What a reference is made of besides the tracer: surfaces, the picture of many slices, the shadows' region. Needs a
-/// current GL context where a session is drawn.
+/// The ingredients of a reference besides the tracer: surfaces, the picture of many slices, the shadows' region. Needs
+/// a current GL context where a session is drawn.
 namespace pellucid::sweeps {
 
 /// The session's scene again, to be changed or drawn another way: loaded from `scene` (a name or a file) with the

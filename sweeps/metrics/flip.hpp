@@ -34,7 +34,7 @@ Exposures automatic_exposures(const Image& reference);
 
 struct FlipOptions {
   double pixels_per_degree = kDefaultPixelsPerDegree;  ///< in [1, 1000]
-  /// What is perceived of the reference is kept for every exposure up to this size, and computed again for each test
+  /// The perceived reference is kept for every exposure up to this size, and computed again for each test
   /// beyond it. A 720x540 frame takes 7.8 MB an exposure.
   std::size_t largest_cache_bytes = std::size_t{1} << 30;
 };

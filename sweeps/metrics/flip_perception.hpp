@@ -25,7 +25,7 @@ struct Filters {
   std::vector<float> second;                      ///< even: positive weights sum to 1, negative ones to -1
 };
 
-/// What is perceived: L*, Hunt-adjusted a* and b*, and the strengths of edges and points.
+/// The perceived picture: L*, Hunt-adjusted a* and b*, and the strengths of edges and points.
 enum Channel { kLightness, kRedGreen, kBlueYellow, kEdge, kPoint, kChannels };
 /// One row of each channel.
 using Row = std::array<const float*, kChannels>;

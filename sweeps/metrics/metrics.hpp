@@ -82,7 +82,7 @@ struct Region {
   Image mask;
 };
 
-/// One reference, compared with many tests. What depends on the reference only is computed once, HDR-FLIP's exposures
+/// One reference, compared with many tests. Work on the reference alone is done once, HDR-FLIP's exposures
 /// included, so all tests of a reference share them. Holds a copy of the reference; compare() may be called from
 /// several threads.
 class Comparison {

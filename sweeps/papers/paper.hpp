@@ -34,7 +34,7 @@ struct Paper {
 
   /// The whole file, for the engine that reads a section of it. Its head has been checked.
   TableReader read() const { return {file, *document}; }
-  /// Of this paper or declared for all; throws InputError with the nearest name.
+  /// A quantity of this paper or declared for all; throws InputError with the nearest name.
   const Quantity& quantity(std::string_view name) const;
   const Quantity* find_quantity(std::string_view name) const;
   /// How the command line calls an entry of it: "PAPER.table1", "my.toml:table1".

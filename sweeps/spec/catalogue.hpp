@@ -8,7 +8,7 @@
 
 namespace pellucid::sweeps {
 
-/// What the planner needs to know of a scene; no mesh, no volume.
+/// The planner's knowledge of a scene; no mesh, no volume.
 struct SceneFacts {
   std::string content_hash;  ///< at the scene's default parameters
   std::vector<std::string> views;
@@ -17,7 +17,7 @@ struct SceneFacts {
   bool volume = false;
 };
 
-/// What a spec may name. The installed one asks the registry and the scene loader; tests bring their own.
+/// The names that a spec may use. The installed one asks the registry and the scene loader; tests bring their own.
 class Catalogue {
  public:
   virtual ~Catalogue() = default;

@@ -33,7 +33,7 @@ constexpr std::size_t kChunk = 4;
   throw InputError(fmt::format("{}:{}:{}: {}", spec.source, at.line, at.column, message));
 }
 
-/// What a point's id is the hash of, but for its parameters, which stand between the two parts.
+/// A point's id is the hash of this, but for its parameters, which stand between the two parts.
 std::pair<std::string, std::string> identity(const Point& point) {
   nlohmann::json all = {{"version", kPointVersion},
                         {"technique", point.technique},
@@ -59,7 +59,7 @@ std::string identity_text(const std::string& name, const Value& value) {
          value_to_json(value).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// What a constraint computes with; nothing for a choice, which it cannot name.
+/// The number that a constraint computes with; nothing for a choice, which it cannot name.
 std::optional<double> number_of(const Value& value) {
   if (const auto* b = std::get_if<bool>(&value)) return *b ? 1 : 0;
   if (const auto* i = std::get_if<std::int64_t>(&value)) return static_cast<double>(*i);
@@ -84,7 +84,7 @@ std::vector<ParameterInfo> full_table(const Catalogue& catalogue, const std::str
   return infos;
 }
 
-/// What the keys of a point say of the work it can share with others.
+/// The keys of a point tell which work it can share with others.
 struct Sharing {
   std::string precompute;  ///< what prepare() makes
   std::string program;     ///< … and the programs
@@ -378,7 +378,7 @@ class Expander {
   std::unordered_set<std::size_t> in_block_;
   std::vector<Sharing> sharing_;
 
-  // Of the place under expansion.
+  // The place under expansion.
   Point shared_;
   Sharing sharing_shared_;
   std::string identity_before_, identity_after_;

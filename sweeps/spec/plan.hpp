@@ -33,7 +33,7 @@ struct Member {
   std::size_t point = 0;  ///< index into Plan::points
 };
 
-/// What a block asks for and does not get.
+/// A point that a block asks for and does not get.
 struct Skipped {
   std::string block;
   std::string why;  ///< "the constraint 'hulls * samples <= 64'" or "the same point again"

@@ -8,8 +8,8 @@
 
 namespace pellucid::sweeps {
 
-/// What frames are compared with: the medium integrated in float64 (algorithms/reference), or the picture that Imagire
-/// et al. 2007, Sec. 5, judge by: very many slices, drawn as the baseline draws them.
+/// The standard that frames are compared with: the medium integrated in float64 (algorithms/reference), or the picture
+/// that Imagire et al. 2007, Sec. 5, judge by: very many slices, drawn as the baseline draws them.
 enum class ReferenceMethod { exact, slices };
 
 /// Where the opaque surfaces of the exact reference come from: the forward pass's geometry with exact shadows, the same
@@ -31,7 +31,7 @@ struct ReferenceSettings {
   /// Metrics are given also over the pixels whose luminance the shadows in the medium lower by more than this share
   /// (names with the suffix `_shadow`); 0: they are not.
   double shadow_share = 0;
-  // Of surfaces from rays: SurfaceOptions.
+  // For surfaces from rays: SurfaceOptions.
   int samples = 1;
   int reflections = SurfaceOptions{}.reflections;
   double cut = SurfaceOptions{}.cut;

@@ -22,7 +22,7 @@
 namespace pellucid::sweeps {
 namespace {
 
-/// What one block draws from: every pair of technique and scene, whose tables must all know an axis.
+/// The choices of one block: every pair of technique and scene, whose tables must all know an axis.
 struct Owners {
   const SpecReader& read;
   const Catalogue& catalogue;

@@ -52,10 +52,11 @@ std::set<std::string> distinct(const RowPointers&, std::string_view field);
 /// Smallest and largest of a field.
 std::optional<std::pair<double, double>> extent(const RowPointers&, std::string_view field);
 
-/// What was chosen for a point, as against measured: technique, scene, view, size ("720×540") and every parameter.
+/// The choices for a point, as against its measurements: technique, scene, view, size ("720×540") and every parameter.
 std::vector<std::pair<std::string, std::string>> settings(const nlohmann::json& row);
 
-/// What two rows differ in, for the message that refuses to pool them: "view is 'a' in one and 'b' in the other".
+/// The difference between two rows, for the message that refuses to pool them: "view is 'a' in one and 'b' in the
+/// other".
 std::string difference(const nlohmann::json& a, const nlohmann::json& b);
 
 /// So many significant digits, without an exponent between 1e-4 and 1e7.

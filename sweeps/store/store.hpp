@@ -50,7 +50,7 @@ struct RunRecord {
   std::size_t points = 0;
 };
 
-/// What a field of a row means, for the table `columns`.
+/// The meaning of a row's field, for the table `columns`.
 struct ColumnMeaning {
   std::string unit, description;
 };
@@ -70,7 +70,7 @@ struct StoredPlan {
   std::vector<std::pair<std::string, std::string>> members;  ///< block and point's id, in order
 };
 
-/// What is known of a point that has been measured or has failed, on one device.
+/// The facts about a point that has been measured or has failed, on one device.
 struct StoredPoint {
   std::string id;
   bool failed = false;
@@ -103,7 +103,7 @@ class Store {
   std::int64_t add_run(const RunRecord&);
   void update_run(std::int64_t id, const RunRecord&);
 
-  // What merging needs (merge.hpp): everything as it stands in the file. The second calls write within
+  // Merging needs these (merge.hpp): everything as it stands in the file. The second calls write within
   // `all_or_nothing`.
   std::vector<StoredPlan> plans() const;
   void put(const StoredPlan&, int rank);
@@ -119,7 +119,7 @@ class Store {
   std::vector<StoredPoint> points() const;
   std::vector<double> samples(const std::string& point) const;  ///< of one device, where there are several
   std::vector<RunRecord> runs() const;
-  /// Of the sweep's latest baseline point, in order of time, whatever the device.
+  /// The sweep's latest baseline point, in order of time, whatever the device.
   std::vector<BaselineSample> baselines(const std::string& sweep) const;
   std::vector<BlockStatus> status() const;
   /// Text of the spec that was last run under this name.

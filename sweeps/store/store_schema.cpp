@@ -18,9 +18,9 @@ using nlohmann::json;
 
 constexpr int kApplicationId = 0x50454c43;  // "PELC"
 
-// Rows are flat JSON objects: their columns are the parameters of whatever techniques there are. What queries need
-// stands beside them. A point has a row for each device and driver that it was measured on; one that failed before its
-// worker said hello has neither.
+// Rows are flat JSON objects: their columns are the parameters of whatever techniques there are. Fields that queries
+// need stand beside them. A point has a row for each device and driver that it was measured on; one that failed before
+// its worker said hello has neither.
 constexpr const char* kPoints = R"(
 CREATE TABLE points(id TEXT NOT NULL, device TEXT NOT NULL, driver TEXT NOT NULL, failed INTEGER NOT NULL,
                     done_unix_s REAL NOT NULL, row TEXT NOT NULL, frame_ms BLOB NOT NULL,
@@ -183,7 +183,7 @@ void ResultsView::note(const std::string& name, const json& value) {
   }
   if (known->second == type || known->second == "TEXT") return;
   if (known->second == "REAL" && type == "INTEGER") return;
-  // What was an integer once may be a real later; anything else that changes is kept as text.
+  // A column of integers may hold a real later; anything else that changes is kept as text.
   known->second = type == "TEXT" ? "TEXT" : "REAL";
   Statement(database_, "UPDATE columns SET type = ?2 WHERE name = ?1").bind(1, name).bind(2, known->second).step();
   stale_ = true;

@@ -32,7 +32,7 @@ class ResultsView {
   void describe(const Plan&);
   void describe(const std::string& name, const std::string& type, const std::string& kind, const std::string& unit,
                 const std::string& description);
-  /// What columns of results mean, for those that come later.
+  /// The meaning of the columns of results, for those that come later.
   void explain(std::map<std::string, ColumnMeaning> meanings) { meanings_ = std::move(meanings); }
   /// Adds the columns that are new with this row.
   void add(const nlohmann::json& row);

@@ -14,7 +14,7 @@
 #include "sweeps/store/store_lock.hpp"
 #include "sweeps/store/store_schema.hpp"
 
-/// What an open store holds. For store.cpp and store_contents.cpp alone.
+/// The state of an open store. For store.cpp and store_contents.cpp alone.
 namespace pellucid::sweeps {
 
 inline std::vector<double> read_reals(const Statement& statement, int column) {

@@ -215,7 +215,7 @@ class GroupFiller {
     }
   }
 
-  /// Of the published values of the same quantity, where an earlier line gives them.
+  /// The published values of the same quantity, where an earlier line gives them.
   std::vector<Published> relative_of_paper(const TableLine& line) const {
     const auto source = std::find_if(spec_.lines.begin(), spec_.lines.end(), [&](const TableLine& other) {
       return !other.published.empty() && !other.is_ratio() && other.quantity == line.quantity;

@@ -96,7 +96,7 @@ std::vector<TableRow> lay_out(const TableSpec& spec, const std::vector<FilledGro
   std::vector<TableRow> rows;
   for (const FilledGroup& group : groups) {
     for (const FilledLine& line : group.lines) {
-      // What the columns are stands once, above all groups.
+      // The columns' own names stand once, above all groups.
       if (line.line->kind == TableLine::Kind::show && &group != &groups.front()) continue;
       add_line(line, spec, group, rows);
     }

@@ -133,7 +133,7 @@ void check_quantity(TableReader& reader, const TableSpec& spec, const TableLine&
   }
 }
 
-/// What a row shows by its name must be a variable of some column.
+/// A row that shows a variable by its name needs a column that has it.
 void check_shown(TableReader& reader, const TableSpec& spec, const std::string& show) {
   if (show == "name" || show.find('{') != std::string::npos) return;
   std::set<std::string> names{"name"};

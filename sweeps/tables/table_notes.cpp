@@ -1,4 +1,4 @@
-// What stands below a table: where its numbers come from and what to mind.
+// The notes below a table: where its numbers come from and what to mind.
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What a scene file says that it stands in for; empty for a scene that is not built in.
+/// The scene that a scene file says it stands in for; empty for a scene that is not built in.
 std::string stand_in(const std::string& scene) {
   for (const SceneInfo& info : list_scenes()) {
     if (info.name != scene) continue;

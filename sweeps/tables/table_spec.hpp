@@ -28,7 +28,7 @@ struct TableEntry {
 /// Stands in a file for a value that does not exist.
 inline constexpr std::string_view kNone = "none";
 
-/// What the paper says in one place.
+/// The paper's own value in one place.
 struct Published {
   std::optional<double> low, high;  ///< the same where it is one number
   bool is_range() const { return low != high; }

@@ -37,7 +37,7 @@ std::string field_text(const json& row, const std::string& field) {
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
-/// What was measured, as against how it came out.
+/// The conditions of a measurement, as against its outcome.
 std::string identity(const json& row, const std::vector<std::string>& parameters) {
   std::string text = fmt::format("{} {} {} {}x{}", field_text(row, "technique"), field_text(row, "scene"),
                                  field_text(row, "view"), field_text(row, "width"), field_text(row, "height"));

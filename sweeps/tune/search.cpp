@@ -11,7 +11,7 @@ namespace {
 
 /// Expected improvement, as a share of the cost, below which nothing promises more.
 constexpr double kSettled = 1e-3;
-/// Of measuring costs and errors, in their logarithms.
+/// The noise of measured costs and errors, in their logarithms.
 constexpr double kCostNoise = 0.02;
 constexpr double kErrorNoise = 0.005;
 

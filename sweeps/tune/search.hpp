@@ -7,7 +7,7 @@
 
 namespace pellucid::sweeps {
 
-/// What a setting was found to cost and how far it is off. `error` is to be small: a quantity of which more is better
+/// A setting's cost and error as found. `error` is to be small: a quantity of which more is better
 /// is negated by the caller.
 struct Outcome {
   double cost = 0;

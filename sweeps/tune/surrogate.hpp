@@ -5,7 +5,7 @@
 
 namespace pellucid::sweeps {
 
-/// What is expected of a function at a place where it has not been measured.
+/// The expected value of a function at a place where it has not been measured.
 struct Prediction {
   double mean = 0;
   double deviation = 0;

@@ -369,7 +369,7 @@ class Runner {
     store_.update_run(run_, record_);
   }
 
-  /// What is known of a row without a worker.
+  /// The part of a row that is known without a worker.
   void describe_row(json& row, const Point& point, const WorkerClient::Hello& hello) const {
     for (const auto& [name, value] : point.parameters)
       row[name] = value_to_json(value);

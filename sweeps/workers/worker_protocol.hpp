@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-/// What parent and worker say to each other, one JSON object a line.
+/// The messages between parent and worker, one JSON object per line.
 ///
 ///   worker → parent   {"type": "hello", "protocol": 1, "device": …, "driver": …, "clock": …}     once, when it can
 ///   render parent → worker   {"type": "measure", "point": {…}, "references": FOLDER, "picture": FILE}   a point, in
@@ -16,7 +16,7 @@
 ///                     {"type": "done", "id": …, "row": {…}, "frame_ms_samples": […]}
 ///                     {"type": "failed", "id": …, "reason": …}
 ///
-/// The worker ends when its input ends. What it prints on standard error is kept for the reason of a crash.
+/// The worker ends when its input ends. Its standard error is kept for the reason of a crash.
 namespace pellucid::sweeps {
 
 inline constexpr int kProtocol = 1;

@@ -8,8 +8,8 @@
 
 namespace pellucid::test {
 
-/// What a compute shader makes of each input: it reads them from buffer 0 and writes as many outputs to buffer 1, with
-/// 64 invocations a group. Both types lie in std430 as in C++. `program` has its uniforms, textures are bound.
+/// The outputs of a compute shader for each input: it reads them from buffer 0 and writes as many outputs to buffer 1,
+/// with 64 invocations a group. Both types lie in std430 as in C++. `program` has its uniforms, textures are bound.
 template <class Output, class Input>
 std::vector<Output> compute(const gl::Program& program, const std::vector<Input>& inputs) {
   const gl::Buffer in("inputs", std::span<const Input>(inputs));

@@ -1,4 +1,4 @@
-// What the techniques over a medium share.
+// The techniques over a medium share this.
 #include "algorithms/media/medium.hpp"
 
 #include <vector>

@@ -115,7 +115,7 @@ TEST(Parameters, TextIsReadWholeOrRefused) {
             "sample: width = inf is out of range [0, 1]");
 }
 
-// What is written comes back, digit by digit, though the member is a float.
+// A value that is written comes back, digit by digit, though the member is a float.
 TEST(Parameters, FloatsReadBackAsWritten) {
   for (const char* text : {"0.1", "1e-05", "0.04", "123456.7", "0", "0.3333333"}) {
     const double written = std::stod(text);

@@ -1,4 +1,4 @@
-// What every technique gets from the session: supersampling, and the refusal of objects it cannot draw.
+// The session gives every technique this: supersampling, and the refusal of objects it cannot draw.
 #include "algorithms/render_session.hpp"
 
 #include <algorithm>

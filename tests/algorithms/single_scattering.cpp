@@ -127,9 +127,9 @@ std::vector<Case> cases() {
 
 class SingleScattering : public testing::TestWithParam<Case> {};
 
-// What is left: single-precision coordinates, and the midpoint rule's Δd²/24 times the integrand's slope at the path's
-// ends and at a spot's edge. With a lamp in the picture some ray passes it at 2 cm, and 6 m / 4096 is small against
-// that.
+// The remaining difference: single-precision coordinates, and the midpoint rule's Δd²/24 times the integrand's slope at
+// the path's ends and at a spot's edge. With a lamp in the picture some ray passes it at 2 cm, and 6 m / 4096 is small
+// against that.
 TEST_P(SingleScattering, IsItsIntegral) {
   const Case& c = GetParam();
   const bool peak = c.name == std::string("point within") || c.name == std::string("spot within");

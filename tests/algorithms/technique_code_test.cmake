@@ -1,4 +1,4 @@
-# What of C++ decides on a technique's hash, on a tree of a few files: `cmake -DSCRIPT=.../technique_code.cmake -DWORK=FOLDER -P …`.
+# The C++ that decides on a technique's hash, on a tree of a few files: `cmake -DSCRIPT=.../technique_code.cmake -DWORK=FOLDER -P …`.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${WORK})

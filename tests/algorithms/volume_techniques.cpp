@@ -220,7 +220,7 @@ TEST(RenderSession, RefusesWhatTheTechniqueLacks) {
   EXPECT_THROW(session.assign_text("frame.fromat", "half"), InputError);
 }
 
-// What moves between frames is drawn where it is now.
+// An object that moves between frames is drawn where it is now.
 TEST(RenderSession, ChangesOfParametersAreDrawn) {
   use_context();
   RenderSession session(test::fog_box_with_ball({4, 4, 4}, 0.75F, 0.9F), "sampling_hulls", "front", 64, 48);

@@ -19,7 +19,7 @@
 namespace pellucid {
 namespace {
 
-/// What the technique draws: an interface in a room with an opaque ball, or fog with one.
+/// The scene that the technique draws: an interface in a room with an opaque ball, or fog with one.
 Scene scene_for(const TechniqueInfo& info) {
   if (!info.interfaces) return test::fog_box_with_ball({4, 4, 4}, 0.75F, 0.9F);
   Scene scene = test::fog_box_with_ball({4, 4, 4}, 0.75F, 0.9F);
@@ -62,7 +62,7 @@ TEST_P(WholeRange, EveryValueIsDrawn) {
     EXPECT_EQ(to_text(own.get(p.name)), to_text(value)) << p.name;
     session.assign(p.name, value);
   };
-  // What is dear stays small while another parameter is tried.
+  // Dear work stays small while another parameter is tried.
   const auto small = [](const ParameterInfo& p) -> Value {
     const bool dear = p.when == Change::precompute && p.type == ValueType::integer;
     return dear ? Value(static_cast<std::int64_t>(p.min)) : p.default_value;
@@ -78,7 +78,7 @@ TEST_P(WholeRange, EveryValueIsDrawn) {
       try {
         session.render(timer);
       } catch (const InputError& error) {
-        // What a device or a scene cannot do is told by the parameter's name.
+        // A limit of a device or a scene is told by the parameter's name.
         EXPECT_NE(std::string(error.what()).find(p.name), std::string::npos) << error.what();
         continue;
       }

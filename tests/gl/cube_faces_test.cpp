@@ -64,7 +64,7 @@ TEST(CubeFaces, TheDeviceReadsTheSameTexel) {
   EXPECT_LE(differ, 2);  // on the border between two texels rounding decides
 }
 
-// What is drawn with the face's transform must be found where the cube map is read.
+// A point that is drawn with the face's transform must be found where the cube map is read.
 TEST(CubeFaces, TransformsPutAPointOnItsTexel) {
   std::mt19937 random(5);
   const glm::vec3 center(0.3F, -2, 5);

@@ -145,7 +145,7 @@ TEST_F(ProgramTest, RefusesAnUnknownKindOfStage) {
   EXPECT_TRUE(contains(message_of<RuntimeError>([] { const Program bad("bad", {"t/main.glsl"}); }), ".frag.glsl"));
 }
 
-// What a compute shader writes into a storage buffer of `count` floats.
+// The floats that a compute shader writes into a storage buffer of `count`.
 std::vector<float> run(const Program& program, std::size_t count) {
   const Buffer buffer("results", count * sizeof(float));
   program.use();

@@ -31,7 +31,7 @@ std::string message(auto&& f) {
   return "no error";
 }
 
-// What expat finds in a document: its elements and all text.
+// The elements and all text that expat finds in a document.
 struct Parsed {
   bool well_formed = false;
   int paths = 0;

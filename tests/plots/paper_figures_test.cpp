@@ -103,7 +103,7 @@ TEST(PaperFigures, BestOfEachProductIsJoinedAndTheOthersShow) {
   EXPECT_EQ(points(chart.series[0]), (Points{{2, 0.6}, {4, 0.2}})) << "faint";
   EXPECT_EQ(chart.series[0].style.line, Line::none);
   EXPECT_EQ(points(chart.series[1]), (Points{{2, 0.5}, {4, 0.1}}));
-  // Of rates the best is the highest.
+  // The best of rates is the highest.
   EXPECT_EQ(points(chart_of("x = 'product'\ny = 'fps'\njoin = 'best'\n").series[1]), (Points{{2, 125}, {4, 62.5}}));
 }
 

@@ -1,4 +1,4 @@
-// What a chart shows of a store's rows: chosen, grouped, never pooled.
+// A chart shows these of a store's rows: chosen, grouped, never pooled.
 #include "plots/figures/rows.hpp"
 
 #include <initializer_list>

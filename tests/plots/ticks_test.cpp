@@ -8,7 +8,7 @@
 namespace pellucid::plots {
 namespace {
 
-// What a label says must be the value it stands at: a lost exponent is a wrong number.
+// A label must say the value it stands at: a lost exponent is a wrong number.
 TEST(Ticks, LabelsReadBackAsTheirValues) {
   for (double value : {1e-9, 2e-5, 1e-4, 5e-4, 0.001, 0.02, 0.5, 1.0, 20.0, 1000.0, 5e4, 1e7}) {
     EXPECT_NEAR(std::stod(power_label(value)) / value, 1.0, 1e-9) << power_label(value);

@@ -1,4 +1,4 @@
-// What the program takes in, and that what it puts out keeps what was computed.
+// The program takes these inputs in, and its outputs keep what was computed.
 #include <cmath>
 #include <cstddef>
 #include <filesystem>

@@ -22,7 +22,8 @@ json rows_of(const std::string& store) {
   return outcome.status == 0 ? json::parse(outcome.out) : json::array();
 }
 
-/// What does not depend on when and how often it was measured: parameters, metrics, hashes, where it was rendered.
+/// The part of a row that does not depend on when and how often it was measured: parameters, metrics, hashes, where it
+/// was rendered.
 json deterministic(const json& row) {
   json out;
   for (const auto& [name, value] : row.items()) {

@@ -33,7 +33,7 @@ struct Technique {
 };
 static_assert(well_formed<Technique>());
 
-/// What the fake worker does with the point (fake_worker.cpp).
+/// The fake worker's action on the point (fake_worker.cpp).
 struct Faulty {
   enum class Does {
     good,

@@ -67,7 +67,7 @@ struct FakeSweep {
       ++lines;
     return lines;
   }
-  /// What is stored of each point; nothing while there is no store, or one without its tables.
+  /// The stored part of each point; nothing while there is no store, or one without its tables.
   std::vector<json> rows() const {
     try {
       return std::filesystem::exists(store) ? read_rows(store, true) : std::vector<json>{};

@@ -1,4 +1,4 @@
-// What a reference can be: settings as JSON, the shadows' region, the picture of many slices.
+// The kinds of a reference: settings as JSON, the shadows' region, the picture of many slices.
 #include "sweeps/measure/reference_methods.hpp"
 
 #include <cstdint>

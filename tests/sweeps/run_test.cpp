@@ -45,7 +45,7 @@ class Sweep : public testing::Test {
     const Spec spec = parse_spec(text, "s.toml", catalogue);
     return run_sweep(spec, make_plan(spec, catalogue), store, options);
   }
-  /// What the fake workers were asked for, in order.
+  /// The points that the fake workers were asked for, in order.
   std::vector<std::string> requests() const {
     std::ifstream file(log);
     std::vector<std::string> lines;

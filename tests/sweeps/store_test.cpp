@@ -315,7 +315,7 @@ TEST(Store, OffersItsRowsToSql) {
   Statement column(db, "SELECT type, kind, description FROM columns WHERE name = 'hulls'");
   ASSERT_TRUE(column.step());
   EXPECT_EQ(column.text(0) + " " + column.text(1) + " " + column.text(2), "INTEGER parameter a uniform");
-  // What was a whole number in the first row may be a real one in the next.
+  // A whole number in the first row may be a real one in the next.
   {
     Store store(folder / "s.db", Access::write);
     json row = row_of("ok", 3);

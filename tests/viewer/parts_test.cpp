@@ -1,4 +1,4 @@
-// What the window is made of, without a window.
+// The parts of the window, without a window.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -53,7 +53,7 @@ TEST(Camera, OrbitsAtItsDistanceWithALevelHorizon) {
 TEST(Camera, PansSoThatTheTargetFollowsThePointer) {
   Camera camera{example(), 640, 480};
   camera.view = pan(camera.view, 64, -48, 480);
-  // What was in the middle is now 64 pixels to the right and 48 up.
+  // The point that was in the middle is now 64 pixels to the right and 48 up.
   const glm::dvec3 towards = camera.ray_direction(320 + 64, 240 - 48);
   const glm::dvec3 old_target(example().target);
   const glm::dvec3 wanted = glm::normalize(old_target - glm::dvec3(camera.view.eye));
@@ -88,7 +88,7 @@ TEST(Camera, DragsAnObjectSoThatItFollowsThePointer) {
   const double per_pixel = 2 * 5 * std::tan(0.5 * 45 * std::acos(-1) / 180) / 480;
   EXPECT_NEAR(std::get<double>(moved[0].second), 50 * per_pixel, 1e-5);
   EXPECT_NEAR(std::get<double>(moved[1].second), 25 * per_pixel, 1e-5);
-  // What is no place moves as its slider would: the picture's width is the range.
+  // A parameter that is no place moves as its slider would: the picture's width is the range.
   EXPECT_EQ(dragged("size", infos, get, view, 64, 0, 640, 480).front().second, Value(1.0));
   EXPECT_EQ(first_placement(infos), "ball_x");
 }

@@ -45,7 +45,7 @@ class ViewerWindow {
   nlohmann::json wait(const std::string& what, const std::function<bool(const nlohmann::json&)>& wanted);
   /// The next picture that is of the panel's own state and for which `wanted` holds of its recipe.
   nlohmann::json wait_picture(const std::function<bool(const nlohmann::json& recipe)>& wanted = {});
-  /// What parameter `name` is in the recipe.
+  /// The value of parameter `name` in the recipe.
   static nlohmann::json value(const nlohmann::json& recipe, const std::string& name);
 
   /// Where a widget is now: x, y, width, height in the window.

@@ -24,7 +24,7 @@ struct LitPart {
 /// cones; and ever finer towards the point nearest to a light, so that its 1/r² is smooth on each part.
 class LightPath {
  public:
-  /// `light` has the scene's lights. Of a volume in a light's space only that light counts. Keeps no reference to the
+  /// `light` has the scene's lights. For a volume in a light's space only that light counts. Keeps no reference to the
   /// scene, but the address of `light`.
   LightPath(const Scene&, const Volume&, const Illumination& light);
 

@@ -31,7 +31,7 @@ class Scattering {
 
   const MediumGrid& grid() const { return grid_; }
 
-  // What a ray needs for a while; kept between rays, since it spares allocations.
+  // A ray needs these for a while; they are kept between rays, since that spares allocations.
   struct Step;
   struct Scratch {
     Scratch();

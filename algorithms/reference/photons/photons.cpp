@@ -93,7 +93,7 @@ struct Source {
   Solids inside;  // those that the lamp stands in
 };
 
-// What some thousand photons of one batch and source give, added up in the order of their numbers.
+// The contributions of some thousand photons of one batch and source, added up in the order of their numbers.
 struct Chunk {
   struct OnTexel {
     std::size_t map;

@@ -165,7 +165,7 @@ glm::dvec3 ReliefTracer::radiance(const ReliefPlace& place, const glm::dvec3& v,
   const double cosine = std::min(-glm::dot(v, n), 1.0);
   const double reflected_share = fresnel_dielectric(cosine, eta);
   glm::dvec3 sum(0.0);
-  // What a ray from here on shows, and how far away that is.
+  // The radiance that a ray shows from here on, and how far away that is.
   const auto seen = [&](const glm::dvec3& direction, double free_m) {
     const ReliefRay ray = place.ray(p, direction);
     const auto solid = meet(solid_, ray, 0.0, 1.0);

@@ -11,7 +11,7 @@
 #include "algorithms/scene/meshes/tangents.hpp"
 #include "algorithms/scene/scene.hpp"
 
-/// What a mesh that carries a relief looks like, by exact hits: the optics and the shading of Timonen (references.bib:
+/// The look of a mesh that carries a relief, by exact hits: the optics and the shading of Timonen (references.bib:
 /// timonen), Algorithms 1 and 2.
 namespace pellucid {
 
@@ -40,7 +40,7 @@ struct ReliefPlace {
   }
 };
 
-/// What a ray meets first.
+/// The first thing that a ray meets.
 struct ReliefHit {
   double distance_m = 0;  ///< from the mesh
   bool medium = false;    ///< the translucent layer; else the solid

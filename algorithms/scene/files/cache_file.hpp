@@ -13,9 +13,9 @@
 
 #include "gl/error.hpp"
 
-/// What is dear to compute is kept in files by the hash of what it was made from. A file that is truncated, altered or
-/// of something else costs a warning and is made again, and a folder that cannot be written costs a warning and nothing
-/// else.
+/// Results that are dear to compute are kept in files by the hash of what they were made from. A file that is
+/// truncated, altered or of something else costs a warning and is made again, and a folder that cannot be written costs
+/// a warning and nothing else.
 namespace pellucid {
 
 /// $PELLUCID_CACHE/NAME, or $XDG_CACHE_HOME/pellucid/NAME, or ~/.cache/pellucid/NAME; empty, which means no files,

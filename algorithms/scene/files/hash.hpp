@@ -12,7 +12,7 @@ namespace pellucid {
 /// SHA-256 as 64 hexadecimal digits.
 std::string sha256_hex(std::span<const std::byte>);
 std::string sha256_hex(std::string_view text);
-/// Of a file's content. Throws InputError when it cannot be read.
+/// The hash of a file's content. Throws InputError when it cannot be read.
 std::string sha256_file(const std::filesystem::path&);
 
 /// SHA-256 of several pieces. add() puts each piece's length before it, so that ("ab", "c") and ("a", "bc") differ.

@@ -21,9 +21,9 @@ enum class EnvironmentLayout {
 /// a ball of diameter d 2d×d). Faces are seen from inside, upright: those at the side with +y up, +y with +z up, −y
 /// with −z up, as OpenEXR lays them out ("OpenEXR Technical Introduction", Environment Maps); where the file's
 /// attribute says that it is such a map, pixels at a face's border lie on the cube's edges. Without a `layout` a file
-/// is what its attribute says, else lat-long. What is only likely (a shape that is not 2:1, a part that is missing)
-/// goes to `warnings`. Throws InputError: a shape that does not fit the layout, or one that is that of a ball; a pixel
-/// that is not finite or above `most` [radiance].
+/// is what its attribute says, else lat-long. A layout that is only likely (a shape that is not 2:1, a part that is
+/// missing) goes to `warnings`. Throws InputError: a shape that does not fit the layout, or one that is that of a ball;
+/// a pixel that is not finite or above `most` [radiance].
 Image to_lat_long(PictureFile, std::optional<EnvironmentLayout> layout, double most,
                   std::vector<std::string>& warnings);
 

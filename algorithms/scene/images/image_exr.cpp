@@ -85,7 +85,7 @@ bool is_color(const Group& group) {
   return group.size() >= 3 && tail(group[0]) == "R" && tail(group[1]) == "G" && tail(group[2]) == "B";
 }
 
-/// What a file without a picture has instead: "Z (part 'depth'), N.X".
+/// The channels of a file that has no picture: "Z (part 'depth'), N.X".
 std::string list_channels(const std::vector<Part>& parts) {
   std::vector<std::string> shown;
   for (const Part& part : parts) {

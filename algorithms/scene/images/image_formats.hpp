@@ -16,7 +16,7 @@ PictureFile read_png(const std::filesystem::path&, std::uint64_t file_bytes);
 /// "cannot read image 'path': reason", the reason's first line without its full stop.
 InputError malformed_image(const std::filesystem::path&, std::string_view reason);
 
-/// What an EXR's header claims, checked before anything of that size is allocated: windows within bounds, and every
+/// An EXR header's claims, checked before anything of that size is allocated: windows within bounds, and every
 /// chunk of each flat part within the file.
 void check_exr(const std::filesystem::path&);
 

@@ -17,7 +17,7 @@ struct PixelWindow {
   bool operator==(const PixelWindow&) const = default;
 };
 
-/// What a PNG says of its colours.
+/// A PNG's statements about its colours.
 struct PngColor {
   std::optional<double> gamma;   ///< gAMA: the exponent by which light was encoded (1: not at all)
   bool srgb = false;             ///< an sRGB chunk

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 namespace {
 
-/// What a primitive's vertices have, in the mesh's space.
+/// The attributes of a primitive's vertices, in the mesh's space.
 struct Vertices {
   std::vector<double> positions, normals, colors, uvs;
   std::size_t color_components = 3;
@@ -52,7 +52,7 @@ class GltfReader {
   }
 
  private:
-  /// Of the default scene, else the first; without scenes all nodes that are no children.
+  /// The nodes of the default scene, else of the first; without scenes all nodes that are no children.
   json root_nodes() const {
     const json& document = file_.document();
     if (document.contains("scenes") && document["scenes"].is_array() && !document["scenes"].empty()) {
@@ -153,7 +153,7 @@ class GltfReader {
     return v;
   }
 
-  /// What the file says of itself, within the rounding of a float.
+  /// The bounds that the file states itself, within the rounding of a float.
   void check_bounds(const json& index, const std::vector<double>& positions) {
     const json& accessor = file_.object("accessors", index, "POSITION");
     if (!accessor.contains("min") || !accessor.contains("max") || accessor.value("normalized", json()) == true) return;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What the keyword "[ST][C][N][4][n]OFF" says that a vertex has beside its place.
+/// The keyword "[ST][C][N][4][n]OFF" tells what a vertex has beside its place.
 struct VertexLayout {
   bool uvs = false, colors = false, normals = false;
 };
@@ -115,7 +115,7 @@ class OffReader {
     return words;
   }
 
-  /// What follows the corners is the face's colour, which is left aside.
+  /// The numbers after the corners are the face's colour, which is left aside.
   void face(std::uint64_t f, std::uint64_t vertices, Faces& all) {
     std::uint64_t corners = 0;
     bool good = lines_.number(corners);

@@ -20,7 +20,7 @@ struct Tangents {
 Tangents tangents_of(const Mesh&, const std::string& what);
 
 /// The orthonormal frame of a surface point, and what it measures: metres over a unit of u and of v. `normal` unit.
-/// What the texture is sheared by is left out.
+/// The texture's shear is left out.
 template <class Vec3>
 struct SurfaceFrame {
   Vec3 along_u, along_v, normal;

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// What a moving layer's heights were made by, so that a technique can make them again on the GPU.
+/// The recipe of a moving layer's heights, so that a technique can make them again on the GPU.
 struct ReliefMotion {
   // Waves: 1/2 plus the sum of these at the time.
   std::vector<Sine> sines;

@@ -71,7 +71,7 @@ void merge(std::vector<RainDrop>& drops, const RainOptions& options) {
     unsigned volume = static_cast<unsigned>(before[i].radius * before[i].radius * before[i].radius);
     for (std::size_t j = 0; j < n; ++j) {
       if (!smaller[j] || !touch(before[i], before[j])) continue;
-      // Of several it goes to the first.
+      // If several compete, the first takes it.
       bool first = true;
       for (std::size_t k = 0; k < i; ++k)
         first = first && !(!smaller[k] && touch(before[k], before[j]));

@@ -18,7 +18,7 @@ struct Bounds {
 /// In its own coordinates; a point at the origin when it has no vertices.
 Bounds mesh_bounds(const Mesh&);
 
-/// Of every instance and the volume, in the world; a point at the origin when the scene has neither.
+/// The bounds of every instance and the volume, in the world; a point at the origin when the scene has neither.
 Bounds world_bounds(const Scene&);
 
 }  // namespace pellucid

@@ -8,7 +8,7 @@
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/shapes/noise.hpp"
 
-/// What trees are made of. Parts are appended to a mesh with vertex colours.
+/// The parts that trees are made of. They are appended to a mesh with vertex colours.
 ///
 /// Random numbers are drawn one statement at a time, or in braces: the order of evaluation of operands and arguments is
 /// the compiler's choice, and a seed must give the same forest with every compiler.

@@ -41,7 +41,7 @@ void parse_file_mesh(TableReader& reader, const std::filesystem::path& folder, M
   reader.integer("subdivide", subdivide, {0, 5});
   processing.subdivide = static_cast<int>(subdivide);
   const std::filesystem::path path = parse_file_name(reader, "file", folder, scene);
-  // What a file refers to counts as well.
+  // The file that this refers to counts as well.
   const auto note_files = [&](const std::vector<std::filesystem::path>& files) {
     for (const std::filesystem::path& other : files) {
       if (other == path) continue;

@@ -114,7 +114,7 @@ void parse_box(TableReader& reader, VolumeDescription& volume) {
   volume.placement.spin = parse_spin(reader);
 }
 
-/// What changes the light changes the box, and what changes the cone changes the voxels.
+/// A change to the light also changes the box, and a change to the cone also changes the voxels.
 void connect_light(VolumeDescription& volume, SceneDescription& scene) {
   const auto light = static_cast<std::size_t>(volume.light);
   LightDescription& from = scene.lights[light];

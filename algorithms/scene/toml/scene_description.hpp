@@ -18,7 +18,7 @@
 #include "algorithms/scene/toml/toml_reader.hpp"
 #include "algorithms/scene/volumes/volume_file.hpp"
 
-/// What a scene file says, before it is evaluated at a time and at values of the scene's parameters. Numbers are
+/// The content of a scene file, before it is evaluated at a time and at values of the scene's parameters. Numbers are
 /// doubles, integers too, and keep their addresses: parameters write them (DriveTarget).
 namespace pellucid {
 

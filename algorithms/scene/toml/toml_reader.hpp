@@ -31,7 +31,7 @@ struct Place {
   int column = 0;
 };
 Place place_of(const toml::node&);
-/// What it is, for an error: "a table", "a string" and so on.
+/// The name of its kind, for an error: "a table", "a string" and so on.
 std::string_view type_name(const toml::node&);
 
 /// The name of the file, as errors show it.
@@ -101,11 +101,11 @@ class TableReader {
  public:
   TableReader(const TomlFile& file, const toml::table& table, std::string path, std::vector<DriveTarget>& targets)
       : file_(&file), table_(&table), path_(std::move(path)), targets_(&targets) {}
-  /// Of a file whose numbers no parameter drives.
+  /// For a file whose numbers no parameter drives.
   TableReader(const TomlFile& file, const toml::table& table, std::string path = "")
       : file_(&file), table_(&table), path_(std::move(path)) {}
 
-  /// What changes when a number read from now on changes; nothing: parameters cannot drive it.
+  /// The part that changes when a number read from now on changes; nothing: parameters cannot drive it.
   void set_affected(std::optional<Affected> affected) { affected_ = affected; }
 
   bool has(std::string_view key) const;

@@ -17,7 +17,7 @@
 #include "algorithms/scene/volumes/volume_formats.hpp"
 #include "gl/error.hpp"
 
-/// What the formats share: numbers of headers, and the bytes behind them.
+/// The formats share this: numbers of headers, and the bytes behind them.
 namespace pellucid {
 
 namespace fs = std::filesystem;

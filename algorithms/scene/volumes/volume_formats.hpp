@@ -19,7 +19,7 @@ VolumeFile load_meta_image(const std::filesystem::path&);
 
 [[noreturn]] void fail_volume(const std::filesystem::path&, std::string_view reason);
 
-/// What a header says, checked before anything is allocated.
+/// A header's claims, checked before anything is allocated.
 struct VolumeHeader {
   glm::ivec3 size{0};
   glm::dvec3 spacing{1.0};

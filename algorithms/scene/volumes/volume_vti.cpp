@@ -151,7 +151,7 @@ VoxelType type_of(vtkDataArray& array) {
   return voxel_type(has_sign ? VoxelKind::signed_integer : VoxelKind::unsigned_integer, bits);
 }
 
-/// vtkXMLDataParser does not notice when it gets fewer bytes than it asked for. What it leaves alone is NaN then, and
+/// vtkXMLDataParser does not notice when it gets fewer bytes than it asked for. The rest is NaN then, and
 /// an error to load_volume_file(); for integers it is at least always the same.
 class MarkingReader : public vtkXMLImageDataReader {
  public:

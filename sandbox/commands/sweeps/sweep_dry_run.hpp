@@ -10,7 +10,7 @@
 
 namespace pellucid::sandbox {
 
-/// What a store holds of its points; empty without a name, or when there is no store yet.
+/// A store's holdings of its points; empty without a name, or when there is no store yet.
 std::map<std::string, sweeps::StoredPoint> stored_points(const std::string& path);
 
 std::vector<sweeps::BlockStatus> count_blocks(const sweeps::Spec&, const sweeps::Plan&,

@@ -37,7 +37,7 @@ struct Action {
   std::function<void()> run;
 };
 
-/// What is drawn in place of the picture.
+/// The surface that is drawn in place of the picture.
 enum class Layer { picture, flip, native };
 
 /// The times of one frame, for the graph.

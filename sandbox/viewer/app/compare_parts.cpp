@@ -187,7 +187,7 @@ PanelPart App::compare_part() {
     auto* gain_bar = new Bar(section->body(), "Gain");
     gain_slider_ = new SliderBar(gain_bar);
     gain_slider_->setId("gain");
-    gain_slider_->set_hint("Of a difference: 1 to 1024 times.");
+    gain_slider_->set_hint("The factor of a difference: 1 to 1024.");
     gain_slider_->dragged = [this](double share) {
       display_.gain = std::exp2(static_cast<float>(std::round(share * 10)));
       picture_dirty_ = true;

@@ -10,7 +10,7 @@
 
 namespace pellucid::sandbox {
 
-/// What the window shows, as JSON lines for tests and reports of faults (`--log FILE`): the places of widgets in window
+/// The window's contents as JSON lines for tests and reports of faults (`--log FILE`): the places of widgets in window
 /// pixels, pictures with their state, the status line, the focus. Each is written when it has changed.
 class Journal {
  public:

@@ -1,4 +1,4 @@
-// What is painted over the picture: names of the sides, the chosen region's figures, frame times, errors of shaders.
+// This file paints over the picture: names of the sides, the chosen region's figures, frame times, errors of shaders.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

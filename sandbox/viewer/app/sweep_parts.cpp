@@ -146,7 +146,7 @@ void App::add_axis() {
     const std::size_t at = text.find(head);
     if (at == std::string::npos) throw InputError(fmt::format("{} has no [run.axes] to add to", path.string()));
     if (text.find("\n" + name + " = ") != std::string::npos) {
-      // What was fixed until now is varied; an axis stays as somebody may have edited it.
+      // A parameter that was fixed until now is varied; an axis stays as somebody may have edited it.
       const std::size_t fixed = text.find("[run.fixed]"), there = text.find("\n" + name + " = ");
       if (fixed == std::string::npos || there < fixed)
         return say(fmt::format("{} has {} already", path.string(), name), true);

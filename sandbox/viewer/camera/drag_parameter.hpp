@@ -11,9 +11,9 @@
 /// Lights and objects are moved by the parameters that place them, so that what a hand did is in the recipe.
 namespace pellucid::sandbox {
 
-/// What a drag over (dx, dy) pixels makes of the parameters that belong to `name` (without the prefix `scene.`).
+/// A drag over (dx, dy) pixels changes the parameters that belong to `name` (without the prefix `scene.`) to these.
 /// Names that end in _x, _y, _z (or _x_m, …) are places of one object along the world's axes: it follows the pointer,
-/// on the floor where there is no _y. Of any other number the drag over the picture's width is its whole range.
+/// on the floor where there is no _y. For any other number the drag over the picture's width is its whole range.
 std::vector<std::pair<std::string, Value>> dragged(const std::string& name, const std::vector<ParameterInfo>& infos,
                                                    const std::function<Value(const std::string&)>& get, const View&,
                                                    float dx_px, float dy_px, int width_px, int height_px);

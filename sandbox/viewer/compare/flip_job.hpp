@@ -12,7 +12,7 @@
 
 namespace pellucid::sandbox {
 
-/// What a comparison of two pictures says.
+/// The outcome of a comparison of two pictures.
 struct FlipResult {
   std::shared_ptr<const Image> test, reference;
   Image map;  ///< one channel, 0 to 1

@@ -50,7 +50,7 @@ void Second::ask_reference() {
   quality_ = "tracing";
   trouble_.clear();
   if (!reference_) reference_ = std::make_unique<RenderClient>(device_, wake_);
-  // What runs is of a state that nobody looks at any more, and may run for minutes.
+  // A job that still runs is of a state that nobody looks at any more, and may run for minutes.
   reference_->cancel();
   ViewState state = wanted;
   state.technique = workspace_.technique(Side::a);

@@ -12,7 +12,7 @@
 
 namespace pellucid::sandbox {
 
-/// What the picture is compared with.
+/// The picture's counterpart in a comparison.
 enum class Against { nothing, technique, reference, file };
 
 /// The second picture: another technique's, the ground truth as it converges in a process of its own, or a file that is

@@ -15,7 +15,7 @@ struct PixelBox {
   bool operator==(const PixelBox&) const = default;
 };
 
-/// What the pixels of a box hold, by channel (red, green, blue, luminance).
+/// The pixels of a box in figures, by channel (red, green, blue, luminance).
 struct BoxStatistics {
   static constexpr int kBins = 64;
   std::size_t pixels = 0;

@@ -1,4 +1,4 @@
-// What is drawn over the displayed picture: the ground where there is none, warnings, false colours, grid of pixels.
+// This is drawn over the displayed picture: the ground where there is none, warnings, false colours, grid of pixels.
 layout(binding = 0) uniform sampler2D composed;
 layout(binding = 1) uniform sampler2D ramp;  // colours from black to pale yellow, display-encoded
 uniform ivec2 corner;                        // of the region, in the window

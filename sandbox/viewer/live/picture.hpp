@@ -14,7 +14,7 @@
 #include "algorithms/technique.hpp"
 #include "sandbox/viewer/state/view_state.hpp"
 
-/// What the renderer (render_worker.hpp) tells the window.
+/// The renderer's messages to the window (render_worker.hpp).
 namespace pellucid::sandbox {
 
 /// A finished frame, never changed again. Its pixels are those that `pellucid render` writes for the same state.
@@ -30,12 +30,12 @@ struct Picture {
   std::size_t gpu_bytes = 0;
   nlohmann::json native_errors;
   std::string scene_hash, device, driver;
-  /// Of a reference: how far it has converged, in words; empty for a technique's frame.
+  /// For a reference: how far it has converged, in words; empty for a technique's frame.
   std::string quality;
   bool converged = true;
 };
 
-/// What is known of a scene once it has been loaded.
+/// The facts about a scene that has been loaded.
 struct LoadedScene {
   std::string scene;
   std::vector<View> views;

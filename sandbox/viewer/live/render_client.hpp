@@ -17,7 +17,7 @@
 
 namespace pellucid::sandbox {
 
-/// What the window asks its renderer for.
+/// The window's requests to its renderer.
 struct RenderRequest {
   std::uint64_t generation = 0;
   ViewState state;
@@ -45,7 +45,7 @@ class RenderClient {
   void cancel();
   std::vector<RenderEvent> take();
   bool busy() const;
-  /// Of the process that draws; 0 when there is none.
+  /// The id of the process that draws; 0 when there is none.
   int pid() const { return pid_; }
 
  private:

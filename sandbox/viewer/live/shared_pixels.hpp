@@ -15,7 +15,7 @@ class SharedPixels {
   SharedPixels(const SharedPixels&) = delete;
   SharedPixels& operator=(const SharedPixels&) = delete;
 
-  /// What the other process opens it by, while this one lives.
+  /// The name by which the other process opens it, while this one lives.
   std::string path() const;
   /// Copies what the other process wrote. Throws RuntimeError when it wrote less.
   void copy_to(std::span<float> out) const;

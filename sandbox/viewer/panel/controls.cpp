@@ -46,7 +46,7 @@ void Field::show(const std::string& words) {
 
 bool Field::type(unsigned codepoint) {
   requestFocus();
-  // What was there is selected, so that typing replaces it.
+  // The old text is selected, so that typing replaces it.
   mSelectionPos = 0;
   mCursorPos = static_cast<int>(mValueTemp.size());
   return keyboardCharacterEvent(codepoint);

@@ -12,7 +12,7 @@
 /// The panel's controls. Each is changed by mouse and by keys; Enter or Space does what a click does.
 namespace pellucid::sandbox {
 
-/// A line of text to edit. What is typed is offered on Enter or when the focus leaves; a refusal keeps the text, in
+/// A line of text to edit. The typed text is offered on Enter or when the focus leaves; a refusal keeps the text, in
 /// red, with the reason in `reason()`. Escape takes it back. Up and Down step.
 class Field : public nanogui::TextBox, public Reachable {
  public:
@@ -20,7 +20,7 @@ class Field : public nanogui::TextBox, public Reachable {
   std::function<std::string(const std::string&)> offer;  ///< returns the reason of a refusal, or nothing
   std::function<void(const std::string&)> typed;         ///< at every key, for a search
   std::function<void(int)> step;
-  /// What stands there unless somebody is typing.
+  /// The text that stands there unless somebody is typing.
   void show(const std::string&);
   const std::string& reason() const { return reason_; }
   bool editing() const { return mFocused; }

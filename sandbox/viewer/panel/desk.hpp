@@ -31,7 +31,7 @@ class Desk : public nanogui::Screen {
   std::function<void(NVGcontext*, float x, float y, float w, float h)> paint_over;  ///< over the picture's area
   std::vector<std::pair<std::string, std::string>> keys;                            ///< the page of keys
 
-  // What the window's callbacks hand on; true when it was the desk's.
+  // The window's callbacks hand these on; true when it was the desk's.
   bool mouse_moved(double x, double y);
   bool mouse_button(int button, int action, int modifiers);
   bool scrolled(double x, double y);

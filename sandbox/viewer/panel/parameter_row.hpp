@@ -8,7 +8,7 @@
 
 namespace pellucid::sandbox {
 
-/// What a row reads and changes. Names are full, with their prefix.
+/// The state that a row reads and changes. Names are full, with their prefix.
 struct ParameterModel {
   std::function<Value(const std::string& name)> get;
   std::function<void(const std::string& name, const Value&)> set;

@@ -77,7 +77,7 @@ void Bookmarks::save(const std::vector<Bookmark>& next) {
   std::error_code error;
   fs::create_directories(file_.parent_path(), error);
   if (!trouble_.empty() && fs::exists(file_, error)) {
-    // What could not be read may still be mended by hand.
+    // A file that could not be read may still be mended by hand.
     fs::path aside = file_;
     for (int number = 1; fs::exists(aside, error); ++number)
       aside = fmt::format("{}.damaged_{}", file_.string(), number);

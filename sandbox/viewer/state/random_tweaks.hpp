@@ -16,7 +16,8 @@ class RandomTweaks {
   explicit RandomTweaks(std::uint64_t seed) : random_(seed) {}
   /// One change of a parameter, technique, view, camera, size or scene; does nothing while the last is being drawn.
   void step(Workspace&);
-  /// Of a picture that claims to be of the panel's state: the first parameter in which it is not; empty when all agree.
+  /// For a picture that claims to be of the panel's state: the first parameter in which it is not; empty when all
+  /// agree.
   static std::string disagreement(const Workspace&);
   std::size_t steps() const { return steps_; }
 

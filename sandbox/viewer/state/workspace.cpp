@@ -164,7 +164,7 @@ void Workspace::set_technique(Side side, const std::string& technique) {
   const auto former = own_[index(side)][technique_[index(side)]];
   const auto infos = find_technique(technique).table().infos();
   technique_[index(side)] = technique;
-  // What a technique of this name had before comes back; else what the former one had under the same names.
+  // The values that a technique of this name had before come back; else those of the former one under the same names.
   if (!own_[index(side)].contains(technique)) {
     auto& own = own_[index(side)][technique];
     for (const auto& [name, value] : former) {

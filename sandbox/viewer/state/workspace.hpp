@@ -68,7 +68,7 @@ class Workspace {
   /// The picture is of an earlier state than the panel's.
   bool stale(Side side) const;
   bool busy() const;
-  /// Of what runs: "precomputing", with the seconds that it takes already; empty when nothing does.
+  /// The name of the job that runs: "precomputing", with the seconds that it takes already; empty when nothing does.
   std::string phase() const;
   /// Why the state cannot be drawn; empty when it can.
   const std::string& trouble() const { return trouble_; }
@@ -88,7 +88,7 @@ class Workspace {
   std::array<std::string, 2> technique_;
   int width_ = 720, height_ = 540;
   std::map<std::string, Value> shared_;  // scene.…, frame.…, shadow.…
-  // Of each side and technique, kept while another is shown.
+  // The settings of each side and technique, kept while another is shown.
   std::array<std::map<std::string, std::map<std::string, Value>>, 2> own_;
   std::map<std::string, Value> carried_;  // the former scene's parameters, until the new one's are known
   LoadedScene loaded_;

@@ -116,7 +116,7 @@ TEST(GeocubeMaps, StandAsThePictureDoes) {
       if (!std::isfinite(*map.at(x, y))) continue;
       ++inside;
       right_or_below += x >= map.width / 2 || y >= map.height / 2 ? 1 : 0;
-      // What is drawn as the way's length is grey, the environment is not.
+      // A pixel drawn as the way's length is grey, the environment is not.
       EXPECT_EQ(image.at(x, y)[0], image.at(x, y)[2]) << x << ' ' << y;
     }
   }

@@ -160,7 +160,7 @@ TEST(GeocubeLayers, EveryIntervalAlongADirectionIsKept) {
 }
 
 TEST(GeocubePlacement, TakesTheMiddleWhereEveryPlaceSeesAll) {
-  // Of an off-centre ball all is seen from everywhere inside, from its middle straight on.
+  // An off-centre ball is seen whole from everywhere inside, from its middle straight on.
   Mesh ball = make_sphere(1.0F, 48);
   for (glm::vec3& p : ball.positions)
     p += glm::vec3(2.0F, -1.0F, 0.5F);

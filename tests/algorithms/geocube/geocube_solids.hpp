@@ -65,7 +65,7 @@ inline double ellipsoid_radius(const glm::dvec3& u, const glm::dvec3& axes) {
   return 1 / glm::length(u / axes);
 }
 
-/// Of the scene's shape as it is by default: three lobes about the y axis.
+/// The radius of the scene's shape as it is by default: three lobes about the y axis.
 inline double star_radius(const glm::dvec3& u) {
   return pellucid::star_radius({}, u);
 }

@@ -67,7 +67,7 @@ inline glm::dvec3 pixel(const Image& image, int x, int y) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-/// What one ray sees: a picture of one pixel.
+/// The radiance that one ray sees: a picture of one pixel.
 inline glm::dvec3 seen(const Scene& scene, const glm::vec3& eye, const glm::vec3& target,
                        const SurfaceOptions& options = {}, const glm::vec3& up = {0, 1, 0}) {
   return pixel(trace_surfaces(scene, looking(eye, target, 1, 1.0F, up), options).radiance, 0, 0);

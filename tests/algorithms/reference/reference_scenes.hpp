@@ -14,7 +14,7 @@
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/shapes/noise.hpp"
 
-/// What the tests of the reference share: small scenes, and ways of their own to the same numbers.
+/// The tests of the reference share this: small scenes, and ways of their own to the same numbers.
 namespace pellucid::test {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -195,7 +195,7 @@ Scene room() {
   return scene;
 }
 
-// What a rasteriser would give: distances in single precision.
+// A rasteriser would give these: distances in single precision.
 SurfacePoints raster_points(const Scene& scene, const Camera& camera) {
   SurfacePoints points;
   points.albedo = points.normal = points.emission = Image(camera.width, camera.height, 3);

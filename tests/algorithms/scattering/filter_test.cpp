@@ -86,7 +86,7 @@ TEST(EnvironmentFilter, KeepsTheEnergy) {
 }
 
 TEST(EnvironmentFilter, SpreadsALampAsAGaussianDoes) {
-  // What a lamp of a few degrees leaves within an angle, against the integral of the Gaussian.
+  // The share of a lamp of a few degrees within an angle, against the integral of the Gaussian.
   const double width = 0.3;
   Environment e = lamp(128);
   for (float& v : e.image->pixels)

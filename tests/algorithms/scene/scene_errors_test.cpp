@@ -12,7 +12,7 @@ namespace {
 
 class SceneErrors : public test::FolderTest {
  protected:
-  /// What load_scene() says of the text, without the file's name.
+  /// The message of load_scene() on the text, without the file's name.
   std::string error_of(std::string_view text) {
     const std::string path = write("s.toml", text).string();
     const std::string message = test::message_of([&] { load_scene(path); });

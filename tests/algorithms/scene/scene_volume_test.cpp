@@ -216,7 +216,7 @@ top = { default = 0.75, range = [0, 1], doc = "d", drives = ["volume.transfer[1]
   scene.parameters().assign("top", 0.5, "scene");
   EXPECT_EQ(scene.volume->transfer[1].density, 0.5F);
   EXPECT_EQ(scene.parameters().infos()[0].when, Change::precompute);
-  // What contradicts is refused, and the scene stays as it was.
+  // A contradiction is refused, and the scene stays as it was.
   EXPECT_NE(test::message_of([&] { scene.parameters().assign("top", 0.25, "scene"); }).find("densities must rise"),
             std::string::npos);
   EXPECT_EQ(scene.volume->transfer.size(), 2U);

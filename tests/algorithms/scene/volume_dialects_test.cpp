@@ -14,7 +14,7 @@
 #include "tests/algorithms/scene/folder_test.hpp"
 #include "tests/algorithms/scene/stored_voxels.hpp"
 
-/// What other programs write: spacings in words of their own, several gzip members, names in capitals, large numbers.
+/// Other programs write these: spacings in words of their own, several gzip members, names in capitals, large numbers.
 namespace pellucid {
 namespace {
 
@@ -166,7 +166,7 @@ TEST_F(VolumeDialects, VtkImageData) {
             "it does not end in '</VTKFile>'");
 }
 
-// What 32-bit floats cannot tell apart.
+// Numbers that 32-bit floats cannot tell apart.
 TEST_F(VolumeDialects, ValuesAreMappedBeforeTheyAreRounded) {
   const auto densities = [&](const std::string& type, const auto& values) {
     std::string bytes;

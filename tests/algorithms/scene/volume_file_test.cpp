@@ -85,7 +85,7 @@ class VolumeFiles : public test::FolderTest {
     EXPECT_EQ(test::values_of(volume), std::vector<double>(expected.begin(), expected.end()));
     EXPECT_EQ(volume.files.front(), file(name));
   }
-  /// What is said of the file, without its name.
+  /// The message about the file, without its name.
   std::string error_of(std::string_view name, const std::string& content) {
     const std::filesystem::path path = write(name, content);
     testing::internal::CaptureStderr();
