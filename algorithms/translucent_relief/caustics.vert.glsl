@@ -17,11 +17,11 @@ void main() {
                                                   corner == 2 || corner == 4 || corner == 5 ? 1.0 : 0.0);
   source = at / float(grid);
   vec2 uv = source / tiling;
-  float height = medium_height(uv);
+  float height = medium_height(source);
   share = vec3(0.0);
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // off the map
-  if (height <= solid_height(uv)) return;
-  vec3 n = medium_normal(uv, 1.0 / metres);
+  if (height <= solid_height(source)) return;
+  vec3 n = medium_normal(source, 1.0 / metres);
   float cosine = dot(to_light, n), eta = outside_index / index;
   if (cosine <= 0.0) return;
   float reflected_share = fresnel_dielectric(cosine, eta);

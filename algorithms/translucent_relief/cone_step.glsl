@@ -4,7 +4,7 @@
 // As linear_crossing(), from above only, through a map of empty cones (Dummer 2006): `cone` gives their width over their
 // height at a point of the mesh's texture, both in units of the map; `range_m` is the layer's height and `tiles` as often
 // as the map repeats. The chord of the last bracket follows where a step ends in the surface.
-float cone_at(int layer, vec2 uv);
+float cone_at(int layer, vec2 at);
 float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, float bias, int steps, int refinements,
                     inout float taken) {
   if (!(range.x < range.y)) return -1.0;
@@ -14,11 +14,11 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
   float least = (range.y - range.x) / float(steps);
   float before = range.x, height_before = 0.0, t = range.x;
   for (int i = 0; i < steps; ++i) {
-    float height = above(layer, ray, t);
+    float height = above(layer, over_map(ray, tiles, t));
     taken += 1.0;
     if (height < -bias && t > range.x) {
       for (int k = 0; k < refinements; ++k) {
-        float middle = 0.5 * (before + t), at_middle = above(layer, ray, middle);
+        float middle = 0.5 * (before + t), at_middle = above(layer, over_map(ray, tiles, middle));
         taken += 1.0;
         if (at_middle < 0.0) {
           t = middle;
@@ -32,12 +32,12 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
     }
     before = t;
     height_before = max(height, 0.0);
-    float closing = across / max(cone_at(layer, uv_at(ray, t)), 1e-4) - upward;
+    float closing = across / max(cone_at(layer, tiles * uv_at(ray, t)), 1e-4) - upward;
     float step = closing > 0.0 ? height_before / range_m / closing : range.y;
     t += max(step, least);
     if (t >= range.y) {
       t = range.y;
-      if (above(layer, ray, t) >= -bias) return -1.0;
+      if (above(layer, over_map(ray, tiles, t)) >= -bias) return -1.0;
     }
   }
   return upward < 0.0 ? t : -1.0;  // so near that the steps gave out; upwards it runs along the surface

@@ -20,45 +20,48 @@ layout(binding = 9) uniform sampler2D medium_acceleration;
 uniform vec2 tiling;
 uniform bool cut;
 
+const int kSolid = 0, kMedium = 1, kEither = 2;
+const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
+
 #ifdef COUNT
-float fetches = 0.0, environment_fetches = 0.0;
-#define FETCHED(n) fetches += float(n)
+// Fetches of the layers' heights and what speeds up their search, by the kind of ray; and of the solid's normals and colours,
+// of the medium's normals, of the environment.
+vec4 solid_fetches = vec4(0.0), medium_fetches = vec4(0.0), other_fetches = vec4(0.0);
+int ray_kind = kView;
+#define FETCHED(which, n) which += float(n)
 #else
-#define FETCHED(n)
+#define FETCHED(which, n)
 #endif
 
-const int kSolid = 0, kMedium = 1, kEither = 2;
-
-float solid_height(vec2 uv) {
-  FETCHED(1);
-  return solid_range.x + solid_range.y * textureLod(solid_heights, uv * tiling, 0.0).r;
+// At a place of the maps.
+float solid_height(vec2 at) {
+  FETCHED(solid_fetches[ray_kind], 1);
+  return solid_range.x + solid_range.y * textureLod(solid_heights, at, 0.0).r;
 }
-float medium_height(vec2 uv) {
+float medium_height(vec2 at) {
 #ifdef TWO_LAYERS
-  FETCHED(1);
-  return medium_range.x + medium_range.y * textureLod(medium_heights, uv * tiling, 0.0).r;
+  FETCHED(medium_fetches[ray_kind], 1);
+  return medium_range.x + medium_range.y * textureLod(medium_heights, at, 0.0).r;
 #else
   return -1e9;
 #endif
 }
 
-float above(int layer, Ray ray, float t) {
-  vec2 uv = uv_at(ray, t);
-  float height;
-  if (layer == kSolid) height = solid_height(uv);
-  else if (layer == kMedium) height = medium_height(uv);
-  else height = max(solid_height(uv), medium_height(uv));
-  return z_at(ray, t) - height;
+float above(int layer, vec3 at) {
+  if (layer == kSolid) return at.z - solid_height(at.xy);
+  if (layer == kMedium) return at.z - medium_height(at.xy);
+  return at.z - max(solid_height(at.xy), medium_height(at.xy));
 }
 
 vec2 extremes(int layer, ivec2 cell, int level) {
-  FETCHED(1);
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
+    FETCHED(medium_fetches[ray_kind], 1);
     ivec2 size = max(textureSize(medium_heights, 0) >> level, ivec2(1));
     return medium_range.x + medium_range.y * texelFetch(medium_acceleration, cell & (size - 1), level).rg;
   }
 #endif
+  FETCHED(solid_fetches[ray_kind], 1);
   ivec2 size = max(textureSize(solid_heights, 0) >> level, ivec2(1));
   return solid_range.x + solid_range.y * texelFetch(solid_acceleration, cell & (size - 1), level).rg;
 }
@@ -73,28 +76,25 @@ int pyramid_top(int layer) {
   return findMSB(max(size.x, size.y));
 }
 vec4 corners(int layer, ivec2 cell) {
-  FETCHED(4);
-  ivec2 last = map_size(layer) - 1;
-  ivec2 a = cell & last, b = (cell + 1) & last;
+  vec2 middle = vec2(cell + 1) / vec2(map_size(layer));
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
-    return medium_range.x + medium_range.y * vec4(texelFetch(medium_heights, a, 0).r,
-                                                  texelFetch(medium_heights, ivec2(b.x, a.y), 0).r,
-                                                  texelFetch(medium_heights, ivec2(a.x, b.y), 0).r,
-                                                  texelFetch(medium_heights, b, 0).r);
+    FETCHED(medium_fetches[ray_kind], 1);
+    return medium_range.x + medium_range.y * textureGather(medium_heights, middle).wzxy;
   }
 #endif
-  return solid_range.x + solid_range.y * vec4(texelFetch(solid_heights, a, 0).r,
-                                              texelFetch(solid_heights, ivec2(b.x, a.y), 0).r,
-                                              texelFetch(solid_heights, ivec2(a.x, b.y), 0).r,
-                                              texelFetch(solid_heights, b, 0).r);
+  FETCHED(solid_fetches[ray_kind], 1);
+  return solid_range.x + solid_range.y * textureGather(solid_heights, middle).wzxy;
 }
-float cone_at(int layer, vec2 uv) {
-  FETCHED(1);
+float cone_at(int layer, vec2 at) {
 #ifdef TWO_LAYERS
-  if (layer == kMedium) return textureLod(medium_acceleration, uv * tiling, 0.0).r;
+  if (layer == kMedium) {
+    FETCHED(medium_fetches[ray_kind], 1);
+    return textureLod(medium_acceleration, at, 0.0).r;
+  }
 #endif
-  return textureLod(solid_acceleration, uv * tiling, 0.0).r;
+  FETCHED(solid_fetches[ray_kind], 1);
+  return textureLod(solid_acceleration, at, 0.0).r;
 }
 float range_of(int layer) {
 #ifdef TWO_LAYERS
@@ -124,14 +124,14 @@ vec2 clip_to_layer(int layer, Ray ray, float from) {
 vec3 normal_of(vec4 texel, bool normal_map, float range, vec2 uv_per_metre) {
   return normalize(normal_map ? texel.xyz : vec3(-range * texel.xy * tiling * uv_per_metre, 1.0));
 }
-vec3 solid_normal(vec2 uv, vec2 uv_per_metre) {
-  FETCHED(1);
-  return normal_of(textureLod(solid_normals, uv * tiling, 0.0), solid_normal_map, solid_range.y, uv_per_metre);
+vec3 solid_normal(vec2 at, vec2 uv_per_metre) {
+  FETCHED(other_fetches.x, 1);
+  return normal_of(textureLod(solid_normals, at, 0.0), solid_normal_map, solid_range.y, uv_per_metre);
 }
-vec3 medium_normal(vec2 uv, vec2 uv_per_metre) {
+vec3 medium_normal(vec2 at, vec2 uv_per_metre) {
 #ifdef TWO_LAYERS
-  FETCHED(1);
-  return normal_of(textureLod(medium_normals, uv * tiling, 0.0), medium_normal_map, medium_range.y, uv_per_metre);
+  FETCHED(other_fetches.z, 1);
+  return normal_of(textureLod(medium_normals, at, 0.0), medium_normal_map, medium_range.y, uv_per_metre);
 #else
   return vec3(0.0, 0.0, 1.0);
 #endif

@@ -14,7 +14,6 @@ uniform vec4 refinements;  // whole numbers, both
 uniform float steps_at_normal;  // share of the steps that a ray along the normal takes
 uniform int boundaries;         // of the medium, that a light ray may pass
 
-const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
 vec4 taken = vec4(0.0);  // heights asked for, by kind of ray
 
 int steps_of(int kind, Ray ray) {
@@ -26,6 +25,9 @@ float find_crossing(int layer, Ray ray, float from, float side, int kind) {
   float count = 0.0;
   float t;
   vec2 range = clip_to_layer(layer, ray, from);
+#ifdef COUNT
+  ray_kind = kind;
+#endif
 #if SEARCH == 1
   t = max_mip_crossing(layer, ray, tiling, range, side, 16 * int(step_counts[kind]), count);
 #else
@@ -37,7 +39,7 @@ float find_crossing(int layer, Ray ray, float from, float side, int kind) {
     t = cone_crossing(layer, ray, tiling, range_of(layer), range, bias, steps, halvings, count);
   else
 #endif
-    t = linear_crossing(layer, ray, range, side, bias, steps, halvings, count);
+    t = linear_crossing(layer, ray, tiling, range, side, bias, steps, halvings, count);
 #endif
   taken[kind] += count;
   return t;
@@ -55,7 +57,7 @@ vec3 light_reaching(Ray frame, vec3 p, vec3 to_light, float side) {
   for (int i = 0; i < boundaries; ++i) {
     float t = find_crossing(kMedium, ray, from, side, kLight);
     if (t < 0.0) break;
-    float cosine = abs(dot(to_light, medium_normal(uv_at(ray, t), ray.uv_per_metre)));
+    float cosine = abs(dot(to_light, medium_normal(tiling * uv_at(ray, t), ray.uv_per_metre)));
     share *= 1.0 - fresnel_dielectric(cosine, side < 0.0 ? outside_index / index : index / outside_index);
     if (side < 0.0) inside += t - from;
     from = t;

@@ -26,7 +26,6 @@ uniform float intensification;
 uniform float plane_height;  // of the flat solid that planar rays meet
 uniform bool planar_reflections;
 uniform bool planar_refractions;
-uniform bool separate_boxes;
 uniform int show;
 
 const int kShowRadiance = 0, kShowReflections = 1, kShowOcclusion = 2, kShowSteps = 3;
@@ -36,6 +35,10 @@ layout(location = 0) out vec4 report_start;   // uv of the fragment; kind of the
 layout(location = 1) out vec4 report_ray;     // direction in the frame; a step of the search
 layout(location = 2) out vec4 report_scale;   // metres over u and v; heights asked for; 1
 layout(location = 3) out vec4 report_light;   // of the first light: direction in the frame, share that reaches the hit
+#elif defined(COUNT)
+layout(location = 0) out vec4 solid_count;  // as layers.glsl counts
+layout(location = 1) out vec4 medium_count;
+layout(location = 2) out vec4 other_count;
 #else
 layout(location = 0) out vec4 radiance;
 #endif
@@ -46,9 +49,7 @@ vec3 to_world_direction(vec3 d) { return d * to_frame; }
 vec3 to_world_point(vec3 p) { return world_position + p * to_frame; }
 
 vec3 sky_radiance(vec3 direction) {
-#ifdef COUNT
-  environment_fetches += 1.0;
-#endif
+  FETCHED(other_fetches.w, 1);
   return environment_radiance(direction);
 }
 
@@ -61,43 +62,6 @@ float object_visibility(int i, vec3 p, vec3 to_light) {
 // Phong's highlight, relative to a white Lambertian surface's radiance in light along its normal.
 float phong(vec2 settings, vec3 reflected, vec3 to_light) {
   return settings.x * pow(max(dot(reflected, to_light), 0.0), settings.y);
-}
-
-// A point of the solid as it is seen along `v`; the paper's SAMPLE. `occlusion`: of the first light.
-vec3 solid_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
-  FETCHED(1);
-  vec2 uv = frame.uv + p.xy * frame.uv_per_metre;
-  vec3 n = solid_normal(uv, frame.uv_per_metre);
-  vec3 albedo = solid_albedo * tint * textureLod(solid_colors, uv * tiling, 0.0).rgb;
-  float side = medium_height(uv) > p.z ? -1.0 : 1.0;
-  vec3 sum = albedo * ambient_count.rgb;
-  occlusion = 1.0;
-  for (int i = 0; i < LIGHT_COUNT; ++i) {
-    vec3 to_light;
-    vec3 irradiance = light_irradiance(i, to_world_point(p), to_light) / kPi;
-    to_light = to_frame * to_light;
-    float cosine = dot(n, to_light);
-#ifdef CAUSTICS
-    // Under a medium: what its surface gathers here, arriving as through a level one.
-    vec3 bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), outside_index / index);
-    if (side < 0.0 && kLightKinds[i] == kDirectional && to_light.z > 0.0 && bent.z > 0.0) {
-      // The maps are of the plane at the solid's mean height: where the light through here comes to it.
-      vec2 on_plane = uv + bent.xy / bent.z * (plane_height - p.z) * frame.uv_per_metre;
-      vec3 gathered = textureLod(caustic_maps, vec3(on_plane * tiling, float(i)), 0.0).rgb;
-      Ray ray = Ray(p, bent, frame.uv, frame.uv_per_metre);
-      if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) gathered = vec3(0.0);
-      sum += irradiance * albedo * gathered *
-             (to_light.z * max(dot(n, bent), 0.0) / bent.z * object_visibility(i, p, to_light));
-      continue;
-    }
-#endif
-    if (cosine <= 0.0 && (i > 0 || show != kShowOcclusion)) continue;
-    vec3 share = light_reaching(frame, p, to_light, side) * object_visibility(i, p, to_light);
-    if (i == 0) occlusion = max(share.r, max(share.g, share.b));
-    if (cosine <= 0.0) continue;
-    sum += irradiance * share * (albedo * cosine + phong(solid_phong, reflect(v, n), to_light));
-  }
-  return sum;
 }
 
 // A normal that looks away from the ray, as interpolated ones may, is turned so far that the ray grazes.
@@ -115,98 +79,174 @@ float meet_solid(Ray ray, int kind, bool planar) {
   return t <= range.y ? t : -1.0;
 }
 
-#ifdef SCATTERING
-// The solid's radiance `color`, met after `t`, as it is seen through a path in the medium: a part of it sharp, a part
-// blurred over as much of the solid as the Gaussian spreads it, a part as its mean; and what the medium itself sends back of
-// the light that falls on `p` with the normal `n`. Blurred are the solid's colours, not its light.
-vec3 through_scattering(Ray frame, vec3 p, vec3 n, Ray ray, float t, float path, vec3 color) {
-  vec2 uv = uv_at(ray, t) * tiling;
-  vec2 texels_per_metre = vec2(textureSize(solid_colors, 0)) * tiling * frame.uv_per_metre;
-  float texels = max(texels_per_metre.x, texels_per_metre.y);
-  vec3 here = max(textureLod(solid_colors, uv, 0.0).rgb, vec3(1e-4)), seen = vec3(0.0);
-  for (int c = 0; c < 3; ++c) {
-    vec4 fit = transfer_row(extinction[c] * path, c);
-    float lod = log2(max(path * tan(min(fit.z, 1.4)) * texels, 1.0));
-    float blurred = textureLod(solid_colors, uv, lod)[c], mean = textureLod(solid_colors, uv, 16.0)[c];
-    seen[c] = color[c] * (fit.x + (fit.y * blurred + fit.w * mean) / here[c]);
-  }
-  vec3 incident = ambient_count.rgb;
+// A place that light falls on.
+struct Place {
+  vec3 p, n;
+  vec3 mirrored;    // the way on of a ray that is reflected there towards the eye
+  float side;       // of the medium's surface: 1 above it, −1 below
+  vec3 albedo;      // diffuse
+  vec2 shine;       // Phong's: weight and exponent
+  bool see_through; // the medium's own surface
+};
+
+// The light that a place sends back of the lights' and the ambient light; the paper's SAMPLE. `occlusion`: of the first light.
+vec3 reflected_radiance(Ray frame, Place place, inout float occlusion) {
+  vec3 p = place.p, sum = place.albedo * ambient_count.rgb;
   for (int i = 0; i < LIGHT_COUNT; ++i) {
     vec3 to_light;
     vec3 irradiance = light_irradiance(i, to_world_point(p), to_light) / kPi;
     to_light = to_frame * to_light;
-    float cosine = dot(n, to_light);
-    if (cosine > 0.0) incident += irradiance * cosine * light_reaching(frame, p, to_light, 1.0) * object_visibility(i, p, to_light);
+    float cosine = dot(place.n, to_light);
+#ifdef CAUSTICS
+    // Under a medium: what its surface gathers here, arriving as through a level one.
+    vec3 bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), outside_index / index);
+    if (place.side < 0.0 && kLightKinds[i] == kDirectional && to_light.z > 0.0 && bent.z > 0.0) {
+      // The maps are of the plane at the solid's mean height: where the light through here comes to it.
+      vec2 on_plane = frame.uv + (p.xy + bent.xy / bent.z * (plane_height - p.z)) * frame.uv_per_metre;
+      vec3 gathered = textureLod(caustic_maps, vec3(on_plane * tiling, float(i)), 0.0).rgb;
+      Ray ray = Ray(p, bent, frame.uv, frame.uv_per_metre);
+      if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) gathered = vec3(0.0);
+      sum += irradiance * place.albedo * gathered *
+             (to_light.z * max(dot(place.n, bent), 0.0) / bent.z * object_visibility(i, p, to_light));
+      continue;
+    }
+#endif
+    bool shown = show == kShowOcclusion && i == 0 && !place.see_through;
+    if (cosine <= 0.0 && !shown) continue;
+    float highlight = phong(place.shine, place.mirrored, to_light);
+    if (place.see_through && highlight < 1e-4 && place.albedo == vec3(0.0)) continue;
+    vec3 share = light_reaching(frame, p, to_light, place.side) * object_visibility(i, p, to_light);
+    if (shown) occlusion = max(share.r, max(share.g, share.b));
+    if (cosine > 0.0) sum += irradiance * share * (place.albedo * cosine + highlight);
   }
-  return seen + scattered_reflectance(path) * incident;
+  return sum;
+}
+
+// A point of the solid that is seen along `v`.
+Place solid_place(Ray frame, vec3 p, vec3 v) {
+  FETCHED(other_fetches.y, 1);
+  vec2 at = tiling * (frame.uv + p.xy * frame.uv_per_metre);
+  vec3 n = solid_normal(at, frame.uv_per_metre);
+  vec3 albedo = solid_albedo * tint * textureLod(solid_colors, at, 0.0).rgb;
+  return Place(p, n, reflect(v, n), medium_height(at) > p.z ? -1.0 : 1.0, albedo, solid_phong, false);
+}
+
+#ifdef SCATTERING
+// The share of the solid's radiance, met after `t`, that is seen through a path in the medium: a part of it sharp, a part
+// blurred over as much of the solid as the Gaussian spreads it, a part as its mean. Blurred are the solid's colours, not
+// its light.
+vec3 through_scattering(Ray ray, float t, float path) {
+  vec2 at = uv_at(ray, t) * tiling;
+  vec2 texels_per_metre = vec2(textureSize(solid_colors, 0)) * tiling * ray.uv_per_metre;
+  float texels = max(texels_per_metre.x, texels_per_metre.y);
+  vec3 here = max(textureLod(solid_colors, at, 0.0).rgb, vec3(1e-4)), seen = vec3(0.0);
+  for (int c = 0; c < 3; ++c) {
+    vec4 fit = transfer_row(extinction[c] * path, c);
+    float lod = log2(max(path * tan(min(fit.z, 1.4)) * texels, 1.0));
+    float blurred = textureLod(solid_colors, at, lod)[c], mean = textureLod(solid_colors, at, 16.0)[c];
+    seen[c] = fit.x + (fit.y * blurred + fit.w * mean) / here[c];
+  }
+  return seen;
 }
 #endif
 
-vec3 medium_radiance(Ray frame, vec3 p, vec3 v, out float occlusion) {
-  vec2 uv_p = frame.uv + p.xy * frame.uv_per_metre;
-  vec3 n = facing(medium_normal(uv_p, frame.uv_per_metre), v);
-  float eta = outside_index / index;
-  float reflected_share = fresnel_dielectric(-dot(v, n), eta);
-  vec3 sum = vec3(0.0);
-  occlusion = 1.0;
-  float unused;
+#ifdef TWO_LAYERS
+// The medium's surface at `p` as lights see it.
+bool shines(vec3 p, vec3 n, vec3 mirrored) {
+  if (show != kShowRadiance || medium_phong.x <= 0.0) return false;
+  bool any_light = false;
+  for (int i = 0; i < LIGHT_COUNT; ++i) {
+    vec3 to_light;
+    light_irradiance(i, to_world_point(p), to_light);
+    to_light = to_frame * to_light;
+    if (phong(medium_phong, mirrored, to_light) >= 1e-4 && dot(n, to_light) > 0.0) any_light = true;
+  }
+  return any_light;
+}
+#endif
 
-  // Refraction, to the solid.
-  if (reflected_share < 1.0) {
-    Ray ray = Ray(p, refract(v, n, eta), frame.uv, frame.uv_per_metre);
-    float t = meet_solid(ray, kRefracted, planar_refractions);
-    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(ray.direction))
-                         : solid_radiance(frame, ray.origin + t * ray.direction, ray.direction, occlusion);
+// Radiance seen along `v` at its hit `p`: the solid, or on the medium's surface what comes through it, what it reflects from
+// the solid or the environment, and the lights' own reflections. First rays are followed, then lights to the places that
+// they met; each in one loop, so that a shader holds a search once, and processors that run pixels in step do nothing for
+// places that none of the pixels has.
+vec3 seen_radiance(Ray frame, vec3 p, vec3 v, bool on_medium, out float occlusion) {
+  const int kThrough = 0, kReflection = 1, kSurface = 2;
+  int places = 1 << kThrough;  // a bit for each that needs light
+  vec3 sum = vec3(0.0), n = vec3(0.0), bent = v, mirrored = v, seen_at = p, reflected_at = p;
+  vec3 through = vec3(1.0), back = vec3(0.0), mark = vec3(0.0);
+  vec2 surface_shine = vec2(0.0);
+  float reflected_share = 0.0;
+#ifdef TWO_LAYERS
+  int part = 0, parts = 0;
+  if (on_medium) {
+    n = facing(medium_normal(tiling * (frame.uv + p.xy * frame.uv_per_metre), frame.uv_per_metre), v);
+    float eta = outside_index / index;
+    reflected_share = fresnel_dielectric(-dot(v, n), eta);
+    bent = refract(v, n, eta);
+    mirrored = reflect(v, n);
+    surface_shine = vec2(mix(reflected_share, 1.0, intensification) * medium_phong.x, medium_phong.y);
+    places = shines(p, n, mirrored) ? 1 << kSurface : 0;
+    part = reflected_share < 1.0 ? kThrough : kReflection;
+    parts = kReflection + 1;
+  }
+  for (; part < parts; ++part) {
+    bool reflection = part == kReflection;
+    Ray ray = Ray(p, reflection ? mirrored : bent, frame.uv, frame.uv_per_metre);
+    float t = meet_solid(ray, reflection ? kReflected : kRefracted,
+                         reflection ? planar_reflections : planar_refractions);
     float end = t < 0.0 ? max(clip_to_layer(kEither, ray, 0.0).y, 0.0) : t;
+    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(ray.direction)) : vec3(0.0), share = vec3(reflected_share);
+    bool solid = t >= 0.0;
 #ifdef OBJECTS
     vec3 object_color;
-    float object = meet_object(to_world_point(p), to_world_direction(ray.direction), end, object_color);
+    float reach = !solid && reflection ? object_reach : end;
+    float object = meet_object(to_world_point(p), to_world_direction(ray.direction), reach, object_color);
     if (object >= 0.0) {
       color = object_color;
       end = object;
+      solid = false;
     }
 #endif
+    if (reflection) {
+      reflected_at = p + t * mirrored;
+      mark = t < 0.0 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+      if (show == kShowReflections) solid = false, share = vec3(0.0);
+    } else {
+      seen_at = p + t * bent;
+      share = vec3(1.0 - reflected_share);
 #ifdef ABSORPTION
-    float leaves = find_crossing(kMedium, ray, 0.0, -1.0, kRefracted);
-    float inside = leaves < 0.0 ? end : min(leaves, end);
+      float leaves = find_crossing(kMedium, ray, 0.0, -1.0, kRefracted);
+      float inside = leaves < 0.0 ? end : min(leaves, end);
 #ifdef SCATTERING
-    color = t < 0.0 ? color * scattered_transmittance(inside) : through_scattering(frame, p, n, ray, t, inside, color);
+      back = share * scattered_reflectance(inside);
+      places |= 1 << kSurface;
+      share *= t < 0.0 ? scattered_transmittance(inside) : through_scattering(ray, t, inside);
 #else
-    color *= transmitted(absorption, inside);
+      share *= transmitted(absorption, inside);
 #endif
 #endif
-    sum += (1.0 - reflected_share) * color;
-  }
-
-  // Reflection, into the surface or the environment.
-  vec3 mirrored = reflect(v, n);
-  {
-    Ray ray = Ray(p, mirrored, frame.uv, frame.uv_per_metre);
-    float t = meet_solid(ray, kReflected, planar_reflections);
-    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(mirrored))
-                         : solid_radiance(frame, p + t * mirrored, mirrored, unused);
-#ifdef OBJECTS
-    vec3 object_color;
-    float reach = t < 0.0 ? object_reach : t;
-    if (meet_object(to_world_point(p), to_world_direction(mirrored), reach, object_color) >= 0.0) color = object_color;
-#endif
-    if (show == kShowReflections) color = (t < 0.0 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0));
-    sum = show == kShowReflections ? mix(sum, color, 0.6) : sum + reflected_share * color;
-  }
-
-  // The lights' own reflections.
-  if (medium_phong.x > 0.0 && show == kShowRadiance) {
-    for (int i = 0; i < LIGHT_COUNT; ++i) {
-      vec3 to_light;
-      vec3 irradiance = light_irradiance(i, to_world_point(p), to_light) / kPi;
-      to_light = to_frame * to_light;
-      float highlight = phong(medium_phong, mirrored, to_light);
-      if (highlight < 1e-4 || dot(n, to_light) <= 0.0) continue;
-      vec3 share = light_reaching(frame, p, to_light, 1.0) * object_visibility(i, p, to_light);
-      sum += mix(reflected_share, 1.0, intensification) * highlight * irradiance * share;
+      through = share;
     }
+    if (solid) places |= 1 << part;
+    sum += share * color;
   }
-  return sum;
+#endif
+  occlusion = 1.0;
+  while (places != 0) {
+    int at = findLSB(places);
+    places &= places - 1;
+    Place place = Place(p, n, mirrored, 1.0, back, surface_shine, true);
+    vec3 share = vec3(1.0);
+    if (at != kSurface) {
+      bool reflection = at == kReflection;
+      place = solid_place(frame, reflection ? reflected_at : seen_at, reflection ? mirrored : bent);
+      share = reflection ? vec3(reflected_share) : through;
+    }
+    float reached = 1.0;
+    sum += share * reflected_radiance(frame, place, reached);
+    if (at == kThrough) occlusion = reached;
+  }
+  return show == kShowReflections && on_medium ? mix(sum, mark, 0.6) : sum;
 }
 
 void main() {
@@ -223,7 +263,7 @@ void main() {
   v.z = min(v.z, -1e-4);  // an interpolated normal may look away
   v = normalize(v);
   Ray ray = Ray(vec3(0.0), v, mesh_uv, 1.0 / metres);
-#if defined(AIR) && !defined(REPORT)
+#if defined(AIR) && !defined(REPORT) && !defined(COUNT)
   vec3 through;
   bool down = bend_through_air(mesh_uv, 1.0 / metres, through, v);
   if (!down) {
@@ -241,20 +281,24 @@ void main() {
   t = 0.0;
 #else
 #ifdef TWO_LAYERS
-  if (separate_boxes || SEARCH != 0) {
+#if defined(SEPARATE_BOXES) || SEARCH != 0
+  {
     float medium = find_crossing(kMedium, ray, 0.0, 1.0, kView);
     t = find_crossing(kSolid, ray, 0.0, 1.0, kView);
     on_medium = medium >= 0.0 && (t < 0.0 || medium < t);
     if (on_medium) t = medium;
-  } else {
-    t = find_crossing(kEither, ray, 0.0, 1.0, kView);
-    vec2 uv = uv_at(ray, t);
-    on_medium = t >= 0.0 && medium_height(uv) > solid_height(uv);
   }
+#else
+  {
+    t = find_crossing(kEither, ray, 0.0, 1.0, kView);
+    vec2 at = tiling * uv_at(ray, t);
+    on_medium = t >= 0.0 && medium_height(at) > solid_height(at);
+  }
+#endif
 #else
   t = find_crossing(kSolid, ray, 0.0, 1.0, kView);
 #endif
-#ifndef REPORT
+#if !defined(REPORT) && !defined(COUNT)
   if (t < 0.0) discard;
 #endif
 #endif
@@ -273,18 +317,23 @@ void main() {
   if (t >= 0.0) share = light_reaching(ray, p, to_light, 1.0);
   report_light = vec4(to_light, max(share.r, max(share.g, share.b)));
 #else
-  vec3 color = on_medium ? medium_radiance(ray, p, v, occlusion) : solid_radiance(ray, p, v, occlusion);
+  vec3 color = vec3(0.0);
+  if (t >= 0.0) color = seen_radiance(ray, p, v, on_medium, occlusion);
   if (show == kShowOcclusion) color = vec3(occlusion);
   if (show == kShowSteps) {
     float most = dot(step_counts, vec4(1.0));
     color = vec3(dot(taken, vec4(1.0)) / most);
   }
 #ifdef COUNT
-  radiance = vec4(fetches, environment_fetches, 1.0, 1.0);
+  solid_count = solid_fetches;
+  medium_count = medium_fetches;
+  other_count = other_fetches;
 #else
   radiance = vec4(color, 1.0);
 #endif
-  vec4 clip = world_to_clip * vec4(to_world_point(p), 1.0);
-  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
+  // Depth over the distance from the eye is far / (far − near) − c / distance along a ray.
+  float at_infinity = clip_planes.y / (clip_planes.y - clip_planes.x);
+  float nearer = distance(world_position, eye) / distance(to_world_point(p), eye);
+  gl_FragDepth = clamp(at_infinity - (at_infinity - gl_FragCoord.z) * nearer, 0.0, 1.0);
 #endif
 }

@@ -12,6 +12,7 @@ namespace {
 
 const std::string kVertex = "algorithms/translucent_relief/relief.vert.glsl";
 const std::string kFragment = "algorithms/translucent_relief/relief.frag.glsl";
+constexpr int kFirstCountUnit = 12;  // of bare_relief.frag.glsl
 
 }  // namespace
 
@@ -38,6 +39,7 @@ gl::Defines ReliefPass::defines(const Relief& relief, const ForwardPass& forward
   defines.emplace_back("MAPPING", parameters_.mapping == Mapping::normal ? "0" : "1");
   defines.emplace_back("SEARCH", std::to_string(static_cast<int>(parameters_.search)));
   if (two_layers(relief)) defines.emplace_back("TWO_LAYERS", "1");
+  if (parameters_.boxes == Boxes::separate) defines.emplace_back("SEPARATE_BOXES", "1");
   if (parameters_.occlusion && parameters_.mapping == Mapping::relief) defines.emplace_back("OCCLUSION", "1");
   if (parameters_.absorption && two_layers(relief)) defines.emplace_back("ABSORPTION", "1");
   if (parameters_.scattering && parameters_.absorption && two_layers(relief) && relief.scatters())
@@ -82,7 +84,6 @@ void ReliefPass::set_uniforms(const Scene& scene, const Instance& instance, cons
   program.set("plane_height", maps.mean_solid_height_m(relief));
   program.set("planar_reflections", parameters_.local_rays != LocalRays::traced);
   program.set("planar_refractions", parameters_.local_rays == LocalRays::planar);
-  program.set("separate_boxes", parameters_.boxes == Boxes::separate);
   program.set("show", static_cast<int>(parameters_.show));
   program.set("step_counts", glm::vec4(parameters_.view_steps, parameters_.reflected_steps, parameters_.refracted_steps,
                                        parameters_.light_steps));
@@ -187,11 +188,13 @@ ReliefPass::FetchCounts ReliefPass::count_fetches(const Scene& scene, const Came
                                                   const ForwardPass& forward) {
   bare_ = gl::Program("bare relief", {kVertex, "algorithms/translucent_relief/bench/bare_relief.frag.glsl"},
                       forward.environment_defines());
-  fetch_counts_ = gl::Texture::make_2d("fetch counts", gl::Format::rgba32f, camera.width, camera.height);
+  for (gl::Texture& counts : fetch_counts_)
+    counts = gl::Texture::make_2d("fetch counts", gl::Format::rgba32f, camera.width, camera.height);
   const gl::Texture depth = gl::Texture::make_2d("count depth", gl::Format::depth32f, camera.width, camera.height);
-  const gl::Framebuffer framebuffer("fetch counts", {&fetch_counts_}, &depth);
+  const gl::Framebuffer framebuffer("fetch counts", {&fetch_counts_[0], &fetch_counts_[1], &fetch_counts_[2]}, &depth);
   framebuffer.bind();
-  framebuffer.clear_color(0, {0, 0, 0, 0});
+  for (int attachment = 0; attachment < 3; ++attachment)
+    framebuffer.clear_color(attachment, {0, 0, 0, 0});
   framebuffer.clear_depth();
   for (const Instance& instance : scene.instances) {
     if (instance.relief < 0) continue;
@@ -200,16 +203,22 @@ ReliefPass::FetchCounts ReliefPass::count_fetches(const Scene& scene, const Came
     draw_mesh(scene, instance, camera, forward, gl::Program("relief counts", {kVertex, kFragment}, wanted));
   }
   FetchCounts counts;
-  const std::vector<float> texels = fetch_counts_.read();
-  for (std::size_t i = 0; i < texels.size(); i += 4) {
-    counts.pixels += static_cast<double>(texels[i + 2]);
-    counts.fetches += static_cast<double>(texels[i] + texels[i + 1]);
+  std::vector<float> sums(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0.0F);
+  for (const gl::Texture& texture : fetch_counts_) {
+    const std::vector<float> texels = texture.read();
+    for (std::size_t i = 0; i < texels.size(); ++i)
+      sums[i / 4] += texels[i];
+  }
+  for (const float sum : sums) {
+    counts.pixels += sum > 0 ? 1 : 0;
+    counts.fetches += static_cast<double>(sum);
   }
   return counts;
 }
 
 void ReliefPass::draw_bare(const Scene& scene, const Camera& camera, const ForwardPass& forward) const {
-  fetch_counts_.bind(14);
+  for (std::size_t i = 0; i < fetch_counts_.size(); ++i)
+    fetch_counts_[i].bind(kFirstCountUnit + static_cast<int>(i));
   for (const Instance& instance : scene.instances) {
     if (instance.relief >= 0) draw_mesh(scene, instance, camera, forward, bare_);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -53,7 +54,7 @@ class ReliefPass {
   bool objects_ = false;  // some opaque objects may be refracted
   gl::Texture object_color_, object_depth_;
   gl::Program bare_;
-  gl::Texture fetch_counts_;
+  std::array<gl::Texture, 3> fetch_counts_;
   std::map<gl::Defines, gl::Program> programs_;
   std::vector<const gl::Program*> program_of_;  // by relief
 };

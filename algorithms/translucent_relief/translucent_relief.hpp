@@ -71,6 +71,7 @@ struct Parameters {
           {.cite = "Sec. 3",
            .doc = "search view rays in one bounding box for both layers, or in each layer's own, as other searches "
                   "than linear always do",
+           .when = Change::program,
            .choices = "shared|separate"});
     visit(PARAM(local_rays), {.cite = "Sec. 3.2",
                               .doc = "how reflected and refracted rays meet the solid: traced, or, reflected ones or "

@@ -25,22 +25,17 @@ layout(binding = 5) uniform sampler2D cones;
 
 const float kLow = -0.3, kRange = 0.3;
 
-float above(int layer, Ray ray, float t) {
-  return z_at(ray, t) - kLow - kRange * textureLod(heights, uv_at(ray, t), 0.0).r;
-}
+float above(int layer, vec3 at) { return at.z - kLow - kRange * textureLod(heights, at.xy, 0.0).r; }
 vec2 extremes(int layer, ivec2 cell, int level) {
   ivec2 size = max(textureSize(heights, 0) >> level, ivec2(1));
   return kLow + kRange * texelFetch(pyramid, cell & (size - 1), level).rg;
 }
 vec4 corners(int layer, ivec2 cell) {
-  ivec2 last = textureSize(heights, 0) - 1;
-  ivec2 a = cell & last, b = (cell + 1) & last;
-  return kLow + kRange * vec4(texelFetch(heights, a, 0).r, texelFetch(heights, ivec2(b.x, a.y), 0).r,
-                              texelFetch(heights, ivec2(a.x, b.y), 0).r, texelFetch(heights, b, 0).r);
+  return kLow + kRange * textureGather(heights, vec2(cell + 1) / vec2(textureSize(heights, 0))).wzxy;
 }
 ivec2 map_size(int layer) { return textureSize(heights, 0); }
 int pyramid_top(int layer) { return findMSB(textureSize(heights, 0).x); }
-float cone_at(int layer, vec2 uv) { return textureLod(cones, uv, 0.0).r; }
+float cone_at(int layer, vec2 at) { return textureLod(cones, at, 0.0).r; }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
@@ -49,7 +44,7 @@ void main() {
   Ray ray = Ray(q.origin.xyz, q.direction.xyz, q.uv, vec2(1.0));
   vec2 range = vec2(q.origin.w, q.direction.w);
   float taken = 0.0, unused = 0.0;
-  float linear = linear_crossing(0, ray, range, q.side, 1e-6, int(q.steps), int(q.refinements), taken);
+  float linear = linear_crossing(0, ray, vec2(1.0), range, q.side, 1e-6, int(q.steps), int(q.refinements), taken);
   float max_mip = max_mip_crossing(0, ray, vec2(1.0), range, q.side, 4096, unused);
   float cone = cone_crossing(0, ray, vec2(1.0), kRange, range, 1e-6, 256, 8, unused);
   outputs[i] = Output(linear, taken, max_mip, cone);

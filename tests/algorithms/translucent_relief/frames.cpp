@@ -178,8 +178,8 @@ TEST(TranslucentRelief, NearTheReference) {
                     {"refracted_refinements", "10"}, {"reflected_refinements", "10"}, {"boundaries", "8"}};
   const Difference close = difference(frame(relief_scene(two_fields()), settings(fine)), expected);
   EXPECT_LT(close.mean, 1e-3);
-  // Both may be as near as single precision allows; the picture has something to miss all the same.
-  EXPECT_LT(close.mean, std::max(coarse.mean, 1e-6));
+  // Both may be as near as single precision allows, some 2e-6; the picture has something to miss all the same.
+  EXPECT_LT(close.mean, std::max(coarse.mean, 5e-6));
   EXPECT_GT(difference(frame(relief_scene(two_fields()), settings({{"translucency", "false"}})), expected).mean, 1e-2);
 }
 

@@ -1,6 +1,8 @@
 // The searches in GLSL: equal steps against its C++ twin, the others against exact rays.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -139,6 +141,31 @@ TEST_F(ReliefSearch, ConesStopAtTheSurface) {
   EXPECT_GT(hits, 500);
   // The cones are of texel centres, and between them they are interpolated: a few steps are too long.
   EXPECT_LE(missed, hits / 50) << "of " << hits;
+}
+
+// A map that is too large is halved; the cones over any of its texels must be empty of the map that was given.
+TEST(ReliefCones, OfReducedMapsAreEmpty) {
+  constexpr int kSide = 2 * translucent_relief::kMostConeTexels;
+  const Image field = test::random_field(kSide, 11, 4);
+  const Image cones = translucent_relief::cone_map(field);
+  ASSERT_EQ(cones.width, translucent_relief::kMostConeTexels);
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> any(0, kSide - 1);
+  int wide = 0, blocked = 0;
+  for (int i = 0; i < 100; ++i) {
+    const int x = any(random), y = any(random);
+    const float apex = *field.at(x, y), cone = *cones.at(x / 2, y / 2);
+    wide += cone > 0.05F ? 1 : 0;
+    for (int v = 0; v < kSide; ++v) {
+      for (int u = 0; u < kSide; ++u) {
+        const auto away = [](int a, int b) { return std::min(std::abs(a - b), kSide - std::abs(a - b)); };
+        const float distance = std::hypot(static_cast<float>(away(u, x)), static_cast<float>(away(v, y))) / kSide;
+        if ((*field.at(u, v) - apex) * cone > distance + 1e-6F) ++blocked;
+      }
+    }
+  }
+  EXPECT_EQ(blocked, 0);
+  EXPECT_GT(wide, 50) << "cones that are all narrow would be of no use";
 }
 
 }  // namespace
