@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "algorithms/reference/photons/photons.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid::distance_impostors {
@@ -106,7 +107,7 @@ void Caustics::prepare(const Scene& scene, const CausticSettings& settings, cons
   cube_light_program_ =
       make_cube_program("caustic light in a cube", folder + "caustic_light.frag.glsl", maps.layers, {});
   light_program_ = gl::Program("caustic light", {kVertexStage, folder + "caustic_light.frag.glsl"});
-  depth_program_ = gl::Program("photon depth", {kVertexStage, folder + "depth.frag.glsl"});
+  depth_program_ = gl::Program("photon depth", {kVertexStage, "algorithms/local_cube_maps/depth.frag.glsl"});
   splat_program_ =
       gl::Program("splats", {folder + "splat.vert.glsl", folder + "splat.geom.glsl", folder + "splat.frag.glsl"});
   if (points_.id() == 0) points_ = gl::VertexArray("photons");
@@ -308,6 +309,19 @@ std::string Caustics::reload_shaders() {
   for (auto& [kind, compiled] : photon_programs_)
     words += compiled.program.reload();
   return words;
+}
+
+void compare_caustics(const Caustics& caustics, const Scene& scene, nlohmann::json& out) {
+  PhotonOptions options;
+  options.photons = std::uint64_t{1} << 17U;
+  const Photons photons = trace_photons(scene, {}, options);
+  const auto mean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; };
+  const double landed = caustics.landed_w(), reference = mean(photons.landed.mean);
+  out["caustic_landed_w"] = landed;
+  out["caustic_reference_w"] = reference;
+  // Channels err alike: the mean of the errors bounds the error of the mean.
+  out["caustic_reference_standard_error_w"] = mean(photons.landed.standard_error);
+  if (reference > 0) out["caustic_energy_ratio"] = landed / reference;
 }
 
 }  // namespace pellucid::distance_impostors

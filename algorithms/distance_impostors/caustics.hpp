@@ -7,11 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include <nlohmann/json_fwd.hpp>
+
 #include "algorithms/distance_impostors/receivers.hpp"
+#include "algorithms/local_cube_maps/dynamic_objects.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 
 namespace pellucid::distance_impostors {
+
+using local_cube_maps::DynamicObjects;
+using local_cube_maps::LookupSettings;
+using local_cube_maps::MapSettings;
 
 struct CausticSettings {
   bool enabled = false;
@@ -79,5 +85,10 @@ class Caustics {
   bool traced_ = false;
   std::vector<std::string> warnings_;
 };
+
+/// The light in the light maps beside what photon tracing lands on opaque surfaces (mean of the channels):
+/// `caustic_landed_w`, `caustic_reference_w` with its `caustic_reference_standard_error_w`, and the
+/// `caustic_energy_ratio` of the first two.
+void compare_caustics(const Caustics&, const Scene&, nlohmann::json& out);
 
 }  // namespace pellucid::distance_impostors

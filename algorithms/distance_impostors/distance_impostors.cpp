@@ -1,12 +1,18 @@
 // Szirmay-Kalos et al. 2005 (references.bib: szirmaykalos2005).
 #include "algorithms/distance_impostors/distance_impostors.hpp"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "algorithms/distance_impostors/localized.hpp"
+#include "algorithms/distance_impostors/caustics.hpp"
+#include "algorithms/local_cube_maps/map_frame.hpp"
 
 namespace pellucid::distance_impostors {
+
+using local_cube_maps::MapFrame;
+using local_cube_maps::RayLookup;
+
 namespace {
 
 class DistanceImpostors final : public Technique {
@@ -14,21 +20,39 @@ class DistanceImpostors final : public Technique {
   ParameterRef parameters() override { return bind_parameters(parameters_); }
   void prepare(const Scene& scene) override {
     maps_ = map_settings(parameters_);
-    localized_.prepare(scene, maps_, lookup_settings(parameters_), caustics());
+    frame_.prepare(scene, maps_, lookup_settings(parameters_));
+    caustics_.prepare(scene, caustic_settings(), maps_, frame_.objects());
+    scene_ = nullptr;
   }
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
     // The sources of the maps change with prepare() alone; the time at which they are drawn again changes freely.
     MapSettings maps = map_settings(parameters_);
     maps.layers = maps_.layers;
-    localized_.render(scene, camera, forward, target, timer, maps, lookup_settings(parameters_));
+    const LookupSettings lookup = lookup_settings(parameters_);
+    const std::vector<std::size_t> due = frame_.draw_maps(scene, forward, timer, maps, lookup);
+    if (parameters_.caustics) {
+      auto pass = timer.pass("caustics");
+      caustics_.update(scene, forward, frame_.objects(), maps, lookup, due);
+    }
+    {
+      auto pass = timer.pass("opaque");
+      target.framebuffer.bind();
+      forward.draw_shaded(camera, false);
+      caustics_.draw(scene, camera);
+    }
+    frame_.draw_objects(scene, camera, forward, target, timer, maps, lookup);
+    scene_ = &scene;
   }
-  void native_errors(nlohmann::json& out) const override { localized_.native_errors(out); }
-  std::vector<NativeMap> native_maps() const override { return localized_.native_maps(); }
-  std::string reload_shaders() override { return localized_.reload_shaders(); }
+  void native_errors(nlohmann::json& out) const override {
+    if (scene_ != nullptr && parameters_.caustics) compare_caustics(caustics_, *scene_, out);
+    frame_.native_errors(caustics_.warnings(), out);
+  }
+  std::vector<NativeMap> native_maps() const override { return frame_.native_maps(); }
+  std::string reload_shaders() override { return frame_.reload_shaders() + caustics_.reload_shaders(); }
 
  private:
-  CausticSettings caustics() const {
+  CausticSettings caustic_settings() const {
     const Parameters& p = parameters_;
     return {.enabled = p.caustics,
             .map_size = p.caustic_size,
@@ -39,28 +63,19 @@ class DistanceImpostors final : public Technique {
 
   Parameters parameters_;
   MapSettings maps_;
-  Localized localized_{"distance_impostors"};
+  MapFrame frame_{"distance_impostors"};
+  Caustics caustics_;
+  const Scene* scene_ = nullptr;  // of the last frame, for native_errors()
 };
 
 }  // namespace
 
 MapSettings map_settings(const Parameters& p) {
-  return {.cube_size = p.cube_size,
-          .format = p.cube_format,
-          .store = p.distance,
-          .layers = layers_of(p.cube_pass),
-          .anchor = p.reference_point,
-          .anchor_point = {p.reference_x_m, p.reference_y_m, p.reference_z_m},
-          .refresh = p.refresh,
-          .refresh_frames = p.refresh_frames,
-          .refresh_ms = p.refresh_ms,
-          .refresh_distance_m = p.refresh_distance_m,
-          .mutual = p.mutual,
-          .refractor_size = p.refractor_size};
+  return p.settings(p.distance, p.refractor_size);
 }
 
 LookupSettings lookup_settings(const Parameters& p) {
-  return {.parallax = Parallax::impostor,
+  return {.kind = RayLookup::search,
           .search = {p.iterations, p.scheme, p.linear_steps},
           .bare = false,
           .bounces = p.bounces,

@@ -2,30 +2,26 @@
 
 #include <memory>
 
-#include "algorithms/distance_impostors/settings.hpp"
+#include "algorithms/local_cube_maps/map_parameters.hpp"
 #include "algorithms/technique.hpp"
 
 /// Approximate ray tracing in cube maps of radiance and distance: Szirmay-Kalos et al. 2005 (references.bib:
 /// szirmaykalos2005).
 namespace pellucid::distance_impostors {
 
+using local_cube_maps::DistanceStore;
+using local_cube_maps::LookupSettings;
+using local_cube_maps::MapParameters;
+using local_cube_maps::MapSettings;
+using local_cube_maps::Scheme;
+
 enum class CausticRefresh { changed, every_frame };
 
-struct Parameters {
+struct Parameters : MapParameters {
   int iterations = 2;
   Scheme scheme = Scheme::false_position;
   int linear_steps = 64;
-  int cube_size = 512;
-  CubeFormat cube_format = CubeFormat::half;
   DistanceStore distance = DistanceStore::texture;
-  CubePass cube_pass = CubePass::automatic;
-  Anchor reference_point = Anchor::object;
-  float reference_x_m = 0, reference_y_m = 0, reference_z_m = 0;
-  Refresh refresh = Refresh::frames;
-  int refresh_frames = 1;
-  float refresh_ms = 150;
-  float refresh_distance_m = 0.25F;
-  int mutual = 1;
   int bounces = 2;
   int refractor_size = 256;
   int internal_reflections = 2;
@@ -52,52 +48,11 @@ struct Parameters {
                                 .cite = "beyond the paper",
                                 .doc = "steps of the linear schemes, equal in angle",
                                 .when = Change::program});
-    visit(PARAM(cube_size), {.range = {64, 2048},
-                             .cite = "Sec. 6",
-                             .doc = "width and height of a face of the cube maps",
-                             .when = Change::precompute,
-                             .unit = "texels"});
-    visit(PARAM(cube_format), {.cite = "Sec. 3",
-                               .doc = "bits of a channel of the cube maps: 16 (half) or 32 (single)",
-                               .when = Change::precompute,
-                               .choices = "half|single"});
+    map_parameters(self, visit, kOwn);
     visit(PARAM(distance), {.cite = "Sec. 6",
                             .doc = "keep the distance in the radiance's alpha, or in a texture of its own",
                             .when = Change::precompute,
                             .choices = "alpha|texture"});
-    visit(PARAM(cube_pass), {.cite = "beyond the paper",
-                             .doc = "faces of a cube map chosen by a geometry shader, by the vertex shader (automatic: "
-                                    "where it can), or drawn one by one",
-                             .when = Change::precompute,
-                             .choices = "automatic|geometry|vertex|faces"});
-    visit(PARAM(reference_point), {.symbol = "o",
-                                   .cite = "Sec. 2",
-                                   .doc = "where the maps are drawn from: each object's middle, the middle of the "
-                                          "opaque objects, or a point",
-                                   .when = Change::precompute,
-                                   .choices = "object|scene|point"});
-    visit(PARAM(reference_x_m),
-          {.range = {-1e4, 1e4}, .cite = "Sec. 2", .doc = "x of that point", .when = Change::precompute, .unit = "m"});
-    visit(PARAM(reference_y_m),
-          {.range = {-1e4, 1e4}, .cite = "Sec. 2", .doc = "y of that point", .when = Change::precompute, .unit = "m"});
-    visit(PARAM(reference_z_m),
-          {.range = {-1e4, 1e4}, .cite = "Sec. 2", .doc = "z of that point", .when = Change::precompute, .unit = "m"});
-    visit(PARAM(refresh), {.cite = "Sec. 6",
-                           .doc = "draw an object's maps once, every refresh_frames frames, every refresh_ms, or when "
-                                  "it has moved by refresh_distance_m",
-                           .choices = "once|frames|interval|movement"});
-    visit(PARAM(refresh_frames),
-          {.range = {1, 100000}, .cite = "Sec. 6", .doc = "frames from one drawing to the next"});
-    visit(PARAM(refresh_ms),
-          {.range = {0, 60000}, .cite = "Sec. 6", .doc = "time from one drawing to the next", .unit = "ms"});
-    visit(PARAM(refresh_distance_m), {.range = {0, 1e4},
-                                      .cite = "Sec. 1",
-                                      .doc = "movement of the reference point that calls for new maps",
-                                      .unit = "m"});
-    visit(PARAM(mutual),
-          {.range = {0, 4},
-           .cite = "Sec. 6",
-           .doc = "times that the other mirrors, metals and dielectrics are drawn into each one's maps"});
     visit(PARAM(bounces), {.range = {1, 2},
                            .cite = "Sec. 4",
                            .doc = "refractions: where a ray enters, or also where it leaves, by the refractor map",
@@ -143,7 +98,7 @@ struct Parameters {
                                    .choices = "changed|every_frame"});
   }
 };
-static_assert(well_formed<Parameters>());
+static_assert(local_cube_maps::well_formed_with_maps<Parameters>());
 
 /// The parameters' meaning as settings. A context must be current.
 MapSettings map_settings(const Parameters&);

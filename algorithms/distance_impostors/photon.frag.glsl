@@ -1,10 +1,10 @@
 // A photon: the light that a texel of the photon map sends on, and where it lands (Sec. 5). exit_index: −1 what is
 // reflected on the outside, i what leaves after i reflections inside.
-#include "algorithms/distance_impostors/lookup.glsl"
-#include "algorithms/distance_impostors/surface_point.glsl"
+#include "algorithms/local_cube_maps/lookup.glsl"
+#include "algorithms/local_cube_maps/surface_point.glsl"
 #include "algorithms/shaders/optics.glsl"
 #if KIND == 3
-#include "algorithms/distance_impostors/refraction.glsl"
+#include "algorithms/local_cube_maps/refraction.glsl"
 #endif
 
 #if KIND != 3

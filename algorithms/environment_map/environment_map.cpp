@@ -2,44 +2,45 @@
 #include "algorithms/environment_map/environment_map.hpp"
 
 #include <string>
+#include <vector>
 
-#include "algorithms/distance_impostors/localized.hpp"
+#include "algorithms/local_cube_maps/map_frame.hpp"
 
 namespace pellucid::environment_map {
 namespace {
+
+using local_cube_maps::RayLookup;
 
 class EnvironmentMap final : public Technique {
  public:
   ParameterRef parameters() override { return bind_parameters(parameters_); }
   void prepare(const Scene& scene) override {
-    layers_ = distance_impostors::layers_of(parameters_.cube_pass);
-    localized_.prepare(scene, maps(), lookup());
+    layers_ = local_cube_maps::layers_of(parameters_.cube_pass);
+    frame_.prepare(scene, maps(), lookup());
   }
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {
-    localized_.render(scene, camera, forward, target, timer, maps(), lookup());
+    frame_.draw_maps(scene, forward, timer, maps(), lookup());
+    {
+      auto pass = timer.pass("opaque");
+      target.framebuffer.bind();
+      forward.draw_shaded(camera, false);
+    }
+    frame_.draw_objects(scene, camera, forward, target, timer, maps(), lookup());
   }
-  void native_errors(nlohmann::json& out) const override { localized_.native_errors(out); }
-  std::string reload_shaders() override { return localized_.reload_shaders(); }
+  void native_errors(nlohmann::json& out) const override { frame_.native_errors({}, out); }
+  std::string reload_shaders() override { return frame_.reload_shaders(); }
 
  private:
-  distance_impostors::MapSettings maps() const {
-    const Parameters& p = parameters_;
-    return {.cube_size = p.cube_size,
-            .format = p.cube_format,
-            .store = distance_impostors::DistanceStore::alpha,  // it is drawn along and never read
-            .layers = layers_,
-            .anchor = p.reference_point,
-            .anchor_point = {p.reference_x_m, p.reference_y_m, p.reference_z_m},
-            .refresh = p.refresh,
-            .refresh_frames = p.refresh_frames,
-            .refresh_ms = p.refresh_ms,
-            .refresh_distance_m = p.refresh_distance_m,
-            .mutual = p.mutual,
-            .refractor_size = 16};
+  local_cube_maps::MapSettings maps() const {
+    // The distance is drawn along and never read.
+    local_cube_maps::MapSettings maps = parameters_.settings(local_cube_maps::DistanceStore::alpha, 16);
+    maps.layers = layers_;
+    return maps;
   }
-  distance_impostors::LookupSettings lookup() const {
-    return {.parallax = static_cast<distance_impostors::Parallax>(parameters_.parallax),
+  local_cube_maps::LookupSettings lookup() const {
+    constexpr RayLookup kLookups[] = {RayLookup::direction, RayLookup::box, RayLookup::sphere};
+    return {.kind = kLookups[static_cast<int>(parameters_.parallax)],
             .search = {},
             .bare = false,
             .bounces = 1,
@@ -49,7 +50,7 @@ class EnvironmentMap final : public Technique {
 
   Parameters parameters_;
   CubeLayers layers_ = CubeLayers::geometry;
-  distance_impostors::Localized localized_{"environment_map"};
+  local_cube_maps::MapFrame frame_{"environment_map"};
 };
 
 }  // namespace

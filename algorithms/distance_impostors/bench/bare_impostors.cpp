@@ -11,13 +11,15 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/distance_impostors/distance_impostors.hpp"
-#include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include "algorithms/local_cube_maps/dynamic_objects.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {
+
+using local_cube_maps::DynamicObjects;
 
 constexpr const char* kName = "distance_impostors";
 

@@ -116,11 +116,12 @@ TEST(Caustics, AnOccluderKeepsPhotonsFromTheObject) {
 
 // The caustics of a scene alone, without a frame around them.
 struct Landed {
-  distance_impostors::DynamicObjects objects;
+  local_cube_maps::DynamicObjects objects;
   distance_impostors::Caustics caustics;
 };
 std::unique_ptr<Landed> land(const Scene& scene, const distance_impostors::CausticSettings& settings) {
   using namespace distance_impostors;
+  using namespace local_cube_maps;
   test::use_context();
   ForwardPass forward(scene);
   forward.update_shadows(scene, {});

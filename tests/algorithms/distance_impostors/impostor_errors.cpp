@@ -12,11 +12,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/distance_impostors/native_errors.hpp"
+#include "algorithms/local_cube_maps/hit_errors.hpp"
 #include "tests/algorithms/distance_impostors/impostor_rooms.hpp"
 #include "tests/algorithms/rendered.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
 constexpr std::array kClasses{"right", "other_surface", "hidden", "unconverged"};
@@ -189,4 +189,4 @@ TEST(NativeMaps, OfDistanceImpostorsHoldWhatTheStatisticsSay) {
 }
 
 }  // namespace
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "algorithms/distance_impostors/hit_search.hpp"
+#include "algorithms/local_cube_maps/hit_search.hpp"
 #include "gl/context.hpp"
 #include "gl/cube_faces.hpp"
 #include "gl/program.hpp"
 #include "tests/algorithms/compute.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
 constexpr double kTexelDeg = 180.0 / std::numbers::pi;
@@ -237,4 +237,4 @@ TEST(ImpostorHitSearch, ShaderAgreesWithItsTwin) {
 }
 
 }  // namespace
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

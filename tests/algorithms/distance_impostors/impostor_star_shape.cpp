@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/distance_impostors/star_shape.hpp"
+#include "algorithms/local_cube_maps/star_shape.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
 TEST(ImpostorStarShape, ConvexSolidsAreFromAnyPointInside) {
@@ -57,4 +57,4 @@ TEST(ImpostorStarShape, ChoosesACentreInside) {
 }
 
 }  // namespace
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

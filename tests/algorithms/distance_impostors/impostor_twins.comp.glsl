@@ -17,7 +17,7 @@ float room_distance(vec3 direction) {
 }
 #define IMPOSTOR_MAP int
 #define IMPOSTOR_DISTANCE(map, direction) room_distance(direction)
-#include "algorithms/distance_impostors/hit_search.glsl"
+#include "algorithms/local_cube_maps/hit_search.glsl"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;

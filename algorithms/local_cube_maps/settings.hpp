@@ -4,23 +4,17 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/distance_impostors/hit_search.hpp"
+#include "algorithms/local_cube_maps/hit_search.hpp"
 #include "algorithms/raster/cube_pass.hpp"
 #include "algorithms/raster/translucency.hpp"
 
-/// The settings that distance_impostors and its baseline environment_map share, apart from how each declares them.
-namespace pellucid::distance_impostors {
+/// The settings of local cube maps and of what rays find in them.
+namespace pellucid::local_cube_maps {
 
 /// Bits of a channel of the cube maps: 16 or 32.
 enum class CubeFormat { half, single };
 /// Where the distance is kept.
 enum class DistanceStore { alpha, texture };
-/// CubeLayers, or one traversal by the vertex shader where it can choose layers, else by a geometry shader.
-enum class CubePass { automatic, geometry, vertex, faces };
-inline CubeLayers layers_of(CubePass pass) {
-  if (pass != CubePass::automatic) return static_cast<CubeLayers>(static_cast<int>(pass) - 1);
-  return vertex_shader_chooses_layers() ? CubeLayers::vertex : CubeLayers::geometry;
-}
 /// When the maps of an object are drawn again.
 enum class Refresh { once, frames, interval, movement };
 /// Where the reference point of an object's maps lies.
@@ -42,14 +36,14 @@ struct MapSettings {
 };
 
 /// How a ray finds its light in the maps.
-enum class Parallax {
-  none,     ///< classical: by its direction alone
-  box,      ///< where it leaves the box around the opaque objects (Bjorke 2004)
-  sphere,   ///< where it leaves a sphere about the reference point (Bjorke 2004)
-  impostor  ///< where the stored distances say
+enum class RayLookup {
+  direction,  ///< classical: by its direction alone
+  box,        ///< where it leaves the box around the opaque objects (Bjorke 2004)
+  sphere,     ///< where it leaves a sphere about the reference point (Bjorke 2004)
+  search      ///< where the stored distances say
 };
 struct LookupSettings {
-  Parallax parallax = Parallax::impostor;
+  RayLookup kind = RayLookup::search;
   HitSearch search;
   bool bare = false;         ///< the fetches of the search and nothing else: what `pellucid bench` compares with
   int bounces = 2;           ///< refractions
@@ -59,4 +53,4 @@ struct LookupSettings {
   std::optional<TranslucencySettings> translucency{};
 };
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -1,4 +1,4 @@
-#include "algorithms/distance_impostors/star_shape.hpp"
+#include "algorithms/local_cube_maps/star_shape.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
 // Solid angle of a triangle about the origin, negative where it shows the origin its front (Van Oosterom and Strackee).
@@ -116,4 +116,4 @@ std::string describe(const std::string& name, const StarShape& shape) {
       name, 100 * shape.hidden_area, 100 * shape.folded, 100 * shape.uncovered);
 }
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -1,5 +1,5 @@
 // Szirmay-Kalos et al. 2005 (references.bib: szirmaykalos2005), Sec. 6: every dynamic object with its own maps.
-#include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include "algorithms/local_cube_maps/dynamic_objects.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 #include "algorithms/scene/shapes/bounds.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
-constexpr const char* kFolder = "algorithms/distance_impostors/";
+constexpr const char* kFolder = "algorithms/local_cube_maps/";
 
 const Instance& instance_of(const Scene& scene, const DynamicObjects::Object& object) {
   return scene.instances[static_cast<std::size_t>(object.instance)];
@@ -217,9 +217,9 @@ void DynamicObjects::draw_report(const Scene& scene, const ForwardPass& forward,
 
 gl::Defines DynamicObjects::defines(SurfaceKind kind, const LookupSettings& lookup) const {
   gl::Defines defines{{"KIND", fmt::to_string(static_cast<int>(kind))},
-                      {"PARALLAX", fmt::to_string(static_cast<int>(lookup.parallax))}};
+                      {"PARALLAX", fmt::to_string(static_cast<int>(lookup.kind))}};
   const bool refractor = kind == SurfaceKind::dielectric && lookup.bounces > 1;
-  if (lookup.parallax == Parallax::impostor || refractor) {
+  if (lookup.kind == RayLookup::search || refractor) {
     defines.emplace_back("ITERATIONS", fmt::to_string(lookup.search.iterations));
     defines.emplace_back("SCHEME", fmt::to_string(static_cast<int>(lookup.search.scheme)));
     defines.emplace_back("LINEAR_STEPS", fmt::to_string(lookup.search.steps));
@@ -277,11 +277,11 @@ void DynamicObjects::bind(const Scene& scene, const Object& object, const Lookup
   program.set("metal_k", material.metal_k);
   program.set("ior", material.ior);
   program.set("absorption", material.absorption);
-  if (lookup.parallax == Parallax::box) {
+  if (lookup.kind == RayLookup::box) {
     program.set("proxy_min", proxy_min_ - object.reference);
     program.set("proxy_max", proxy_max_ - object.reference);
   }
-  if (lookup.parallax == Parallax::sphere) {
+  if (lookup.kind == RayLookup::sphere) {
     const glm::vec3 half = 0.5F * (proxy_max_ - proxy_min_);
     program.set("proxy_radius", lookup.proxy_radius_m > 0 ? lookup.proxy_radius_m : (half.x + half.y + half.z) / 3.0F);
   }
@@ -311,4 +311,4 @@ std::string DynamicObjects::reload_shaders() {
   return words;
 }
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -9,7 +9,7 @@
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 /// Which surface of an optical object each pixel shows. A rasteriser shades whole blocks of pixels for each triangle,
 /// and those of a finely tessellated object are no larger than a pixel: so a first pass keeps the surfaces, and a
@@ -37,4 +37,4 @@ class ObjectPixels {
   gl::VertexArray fullscreen_;
 };
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

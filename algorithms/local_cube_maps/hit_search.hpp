@@ -7,7 +7,7 @@
 
 /// Where a ray meets the environment that a distance impostor stores (Szirmay-Kalos et al. 2005, Sec. 2,
 /// references.bib: szirmaykalos2005). GLSL twin: hit_search.glsl.
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 enum class Scheme {
   secant,                ///< Eq. 6 on the last two points
@@ -184,4 +184,4 @@ glm::vec<3, Real> find_hit(const glm::vec<3, Real>& x, const glm::vec<3, Real>& 
   return l;
 }
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -1,4 +1,4 @@
-#include "algorithms/distance_impostors/refractor_map.hpp"
+#include "algorithms/local_cube_maps/refractor_map.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 #include "algorithms/raster/object_vertices.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
     : center_(choose_center(mesh)),
@@ -35,7 +35,7 @@ RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
   const CubeTarget target("refractor", {&map_}, &depth);
   const CubeCamera camera{center_, 1e-3F * reach, 1.05F * reach, pass};
   const gl::Program program =
-      make_cube_program("refractor map", "algorithms/distance_impostors/refractor.frag.glsl", pass, {});
+      make_cube_program("refractor map", "algorithms/local_cube_maps/refractor.frag.glsl", pass, {});
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
@@ -52,4 +52,4 @@ RefractorMap::RefractorMap(const Mesh& mesh, int size, CubeLayers layers)
   });
 }
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "algorithms/distance_impostors/star_shape.hpp"
+#include "algorithms/local_cube_maps/star_shape.hpp"
 #include "algorithms/raster/cube_pass.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "gl/objects.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 /// Distance of an object's surface from its centre, and the outward normal there, in every direction (Szirmay-Kalos et
 /// al. 2005, Sec. 4), in 32-bit floats since refraction magnifies the error of a normal. Kept in the mesh's own space,
@@ -25,4 +25,4 @@ class RefractorMap {
   gl::Texture map_;
 };
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -10,15 +10,15 @@
 #include <tuple>
 #include <vector>
 
-#include "algorithms/distance_impostors/impostor_cube.hpp"
-#include "algorithms/distance_impostors/object_pixels.hpp"
-#include "algorithms/distance_impostors/refractor_map.hpp"
+#include "algorithms/local_cube_maps/impostor_cube.hpp"
+#include "algorithms/local_cube_maps/object_pixels.hpp"
+#include "algorithms/local_cube_maps/refractor_map.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 #include "algorithms/raster/translucency.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/timer.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 /// The mirrors, metals and dielectrics of a scene, each with its own maps: the algorithm of Szirmay-Kalos et al. 2005,
 /// Sec. 6, in its preparation phase (update) and its frame phase (draw).
@@ -105,4 +105,4 @@ class DynamicObjects {
   Cost cost_;
 };
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

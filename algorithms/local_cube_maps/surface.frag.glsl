@@ -1,9 +1,9 @@
 // A mirror, metal or dielectric in localized light (Sec. 3 and 4).
-#include "algorithms/distance_impostors/lookup.glsl"
-#include "algorithms/distance_impostors/surface_point.glsl"
+#include "algorithms/local_cube_maps/lookup.glsl"
+#include "algorithms/local_cube_maps/surface_point.glsl"
 #include "algorithms/shaders/optics.glsl"
 #if KIND == 3
-#include "algorithms/distance_impostors/refraction.glsl"
+#include "algorithms/local_cube_maps/refraction.glsl"
 #ifdef SCATTERING
 vec3 leaves_at;  // where the light in question leaves
 vec3 sharp_radiance(vec3 direction) { return incoming(leaves_at, direction); }

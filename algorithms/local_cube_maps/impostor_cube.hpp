@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "algorithms/distance_impostors/settings.hpp"
+#include "algorithms/local_cube_maps/settings.hpp"
 #include "algorithms/raster/cube_pass.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 /// A distance impostor: the environment of a reference point, its radiance and its distance [m] (Szirmay-Kalos et al.
 /// 2005, Sec. 2).
@@ -33,4 +33,4 @@ class ImpostorCube {
   CubeCamera camera_;
 };
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

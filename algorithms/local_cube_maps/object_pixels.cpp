@@ -1,6 +1,6 @@
-#include "algorithms/distance_impostors/object_pixels.hpp"
+#include "algorithms/local_cube_maps/object_pixels.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
 constexpr unsigned kUnit = 9;  // surface_point.glsl
@@ -28,8 +28,8 @@ void ObjectPixels::clear(const PixelArea& area) const {
 
 const gl::Program& ObjectPixels::surfaces(const Camera& camera, int number) {
   if (!surfaces_) {
-    surfaces_ = gl::Program("object pixels", {"algorithms/shaders/opaque.vert.glsl",
-                                              "algorithms/distance_impostors/object_pixels.frag.glsl"});
+    surfaces_ = gl::Program(
+        "object pixels", {"algorithms/shaders/opaque.vert.glsl", "algorithms/local_cube_maps/object_pixels.frag.glsl"});
   }
   surfaces_.set("eye", camera.view.eye);
   surfaces_.set("object_number", number);
@@ -50,4 +50,4 @@ void ObjectPixels::fill(const PixelArea& area) const {
   fill_area(area, fullscreen_);
 }
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

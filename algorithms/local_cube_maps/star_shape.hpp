@@ -8,7 +8,7 @@
 
 /// A refractor map holds one distance for each direction, so that the object must be star-shaped: every point of its
 /// surface is seen from one centre (Szirmay-Kalos et al. 2005, Sec. 4). This says by how much an object is not.
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 struct StarShape {
   double hidden_area = 0;  ///< share of the area that faces the centre, so that other surface lies before it
@@ -31,4 +31,4 @@ bool closed(const Mesh&);
 /// One line: "refractor 'skull' is not star-shaped: 12.1 % of its area …".
 std::string describe(const std::string& name, const StarShape&);
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

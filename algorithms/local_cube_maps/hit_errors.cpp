@@ -1,4 +1,4 @@
-#include "algorithms/distance_impostors/native_errors.hpp"
+#include "algorithms/local_cube_maps/hit_errors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/raster/native_map.hpp"
-#include "algorithms/reference/photons/photons.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 /// The outputs of report.frag.glsl, four floats a pixel each, rows from the bottom.
 struct RayReport {
@@ -109,9 +108,9 @@ void HitErrors::add(const DynamicObjects::Object& object, const InterfaceTracer&
       ++hidden_;
     else
       seen_deg_.push_back(place.direction_error_deg);
-    if (parallax_ == Parallax::none) continue;
+    if (lookup_kind_ == RayLookup::direction) continue;
     put(kHit, glm::distance(l, q));
-    if (parallax_ != Parallax::impostor) continue;
+    if (lookup_kind_ != RayLookup::search) continue;
     place.ratio = glm::length(l - o) / static_cast<double>(report.direction[i + 3]);
     if (!(std::abs(place.ratio - 1) <= kConverged)) ++unconverged_;
     place.off_plane = away > 0 ? std::abs(glm::dot(hit.face, l - q)) / away : 0;
@@ -121,7 +120,7 @@ void HitErrors::add(const DynamicObjects::Object& object, const InterfaceTracer&
 
 HitErrors::HitErrors(DynamicObjects& objects, const Scene& scene, const ForwardPass& forward, const Camera& camera,
                      const MapSettings& maps, const LookupSettings& lookup)
-    : parallax_(lookup.parallax), refracts_twice_(lookup.bounces > 1), cube_size_(maps.cube_size) {
+    : lookup_kind_(lookup.kind), refracts_twice_(lookup.bounces > 1), cube_size_(maps.cube_size) {
   const auto add_map = [&](const char* name, const char* unit, const char* doc) -> NativeMap& {
     return maps_.emplace_back(make_native_map(name, unit, doc, camera.width, camera.height));
   };
@@ -139,7 +138,7 @@ HitErrors::HitErrors(DynamicObjects& objects, const Scene& scene, const ForwardP
   const gl::Framebuffer framebuffer("rays", {&origin, &direction, &hit}, &depth);
   // This draws the surfaces before the objects, without a colour.
   const gl::Program covers("rays' depth",
-                           {"algorithms/shaders/opaque.vert.glsl", "algorithms/distance_impostors/depth.frag.glsl"});
+                           {"algorithms/shaders/opaque.vert.glsl", "algorithms/local_cube_maps/depth.frag.glsl"});
   const InterfaceTracer tracer(scene);
   for (const DynamicObjects::Object& object : objects.objects()) {
     framebuffer.bind();
@@ -167,7 +166,7 @@ void HitErrors::write(nlohmann::json& out) const {
   summarise_values(exit_diagonals_, "exit_error_diagonals", out);
   summarise_values(exit_deg_, "exit_direction_error_deg", out);
   summarise(maps_[kHit], out);
-  if (parallax_ != Parallax::impostor) return;
+  if (lookup_kind_ != RayLookup::search) return;
   out["unconverged_share"] = share(unconverged_, hits);
 
   std::array<std::size_t, kClasses.size()> counts{};
@@ -190,17 +189,4 @@ void HitErrors::write(nlohmann::json& out) const {
   }
 }
 
-void compare_caustics(const Caustics& caustics, const Scene& scene, nlohmann::json& out) {
-  PhotonOptions options;
-  options.photons = std::uint64_t{1} << 17U;
-  const Photons photons = trace_photons(scene, {}, options);
-  const auto mean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; };
-  const double landed = caustics.landed_w(), reference = mean(photons.landed.mean);
-  out["caustic_landed_w"] = landed;
-  out["caustic_reference_w"] = reference;
-  // Channels err alike: the mean of the errors bounds the error of the mean.
-  out["caustic_reference_standard_error_w"] = mean(photons.landed.standard_error);
-  if (reference > 0) out["caustic_energy_ratio"] = landed / reference;
-}
-
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

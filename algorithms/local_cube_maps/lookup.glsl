@@ -21,7 +21,7 @@ vec3 environment_hit(vec3 x, vec3 R) {
   return x + R * max(sqrt(max(along * along - dot(x, x) + proxy_radius * proxy_radius, 0.0)) - along, 0.0);
 }
 #elif PARALLAX == 3
-#include "algorithms/distance_impostors/hit_search.glsl"
+#include "algorithms/local_cube_maps/hit_search.glsl"
 
 vec3 environment_hit(vec3 x, vec3 R) { return find_hit(x, R, distance_cube); }
 #else

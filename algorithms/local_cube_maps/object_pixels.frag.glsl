@@ -1,5 +1,5 @@
 // The first pass over mirrors, metals and dielectrics: which surface a pixel shows.
-#include "algorithms/distance_impostors/surface_point.glsl"
+#include "algorithms/local_cube_maps/surface_point.glsl"
 
 uniform int object_number;
 

@@ -1,8 +1,8 @@
-#include "algorithms/distance_impostors/impostor_cube.hpp"
+#include "algorithms/local_cube_maps/impostor_cube.hpp"
 
 #include <algorithm>
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 namespace {
 
 constexpr float kSkyReaches = 16;          // as many times farther than the farthest corner of the scene
@@ -39,4 +39,4 @@ void ImpostorCube::bind() const {
   distance().bind(5);
 }
 
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps

@@ -1,9 +1,9 @@
 // The native errors compare this with the reference: the ray that leaves the object, and where it is taken to hit. In a
 // dielectric this is the ray that leaves first.
-#include "algorithms/distance_impostors/lookup.glsl"
-#include "algorithms/distance_impostors/surface_point.glsl"
+#include "algorithms/local_cube_maps/lookup.glsl"
+#include "algorithms/local_cube_maps/surface_point.glsl"
 #if KIND == 3
-#include "algorithms/distance_impostors/refraction.glsl"
+#include "algorithms/local_cube_maps/refraction.glsl"
 #endif
 
 layout(location = 0) out vec4 ray_origin;     // a: 1 where the object is seen

@@ -6,12 +6,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "algorithms/distance_impostors/caustics.hpp"
-#include "algorithms/distance_impostors/dynamic_objects.hpp"
+#include "algorithms/local_cube_maps/dynamic_objects.hpp"
 #include "algorithms/reference/interfaces.hpp"
 #include "algorithms/technique.hpp"
 
-namespace pellucid::distance_impostors {
+namespace pellucid::local_cube_maps {
 
 /// Why a ray's hit is right or wrong.
 enum class HitClass {
@@ -63,7 +62,7 @@ class HitErrors {
   void add_exit(const InterfaceTracer&, const Camera&, std::size_t pixel, int instance, const glm::dvec3& from,
                 const glm::dvec3& R);
 
-  Parallax parallax_;
+  RayLookup lookup_kind_;
   bool refracts_twice_;
   int cube_size_;
   std::vector<NativeMap> maps_;
@@ -72,9 +71,4 @@ class HitErrors {
   std::vector<double> seen_deg_;
 };
 
-/// The light in the light maps beside what photon tracing lands on opaque surfaces (mean of the channels):
-/// `caustic_landed_w`, `caustic_reference_w` with its `caustic_reference_standard_error_w`, and the
-/// `caustic_energy_ratio` of the first two.
-void compare_caustics(const Caustics&, const Scene&, nlohmann::json& out);
-
-}  // namespace pellucid::distance_impostors
+}  // namespace pellucid::local_cube_maps
