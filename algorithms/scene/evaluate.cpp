@@ -20,7 +20,7 @@ int whole(double value) {
   return static_cast<int>(std::lround(value));
 }
 
-[[noreturn]] void contradict(const SceneDescription& scene, Place place, std::string_view message) {
+[[noreturn]] void contradict(const SceneDescription& scene, FilePosition place, std::string_view message) {
   throw scene.file.error(place, message);
 }
 
@@ -189,7 +189,7 @@ void evaluate_environment(SceneDescription& description, Scene& scene) {
 
 }  // namespace
 
-glm::dmat3 turn(const SceneDescription& scene, const Placement& placement, Place place, double time_s) {
+glm::dmat3 turn(const SceneDescription& scene, const Placement& placement, FilePosition place, double time_s) {
   if (glm::length(placement.rotation_axis) < 1e-9) contradict(scene, place, "rotation_axis must not be zero");
   const glm::dmat3 turned = rotation(placement.rotation_axis, placement.rotation_deg);
   return placement.spin ? placement.spin->at(time_s) * turned : turned;

@@ -19,7 +19,6 @@
 #include "sweeps/spec/constraint.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/provenance.hpp"
-#include "sweeps/spec/spec_reader.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -29,7 +28,7 @@ constexpr int kPointVersion = 1;
 /// Points of one chunk; a chunk shares its precomputation.
 constexpr std::size_t kChunk = 4;
 
-[[noreturn]] void fail(const Spec& spec, Position at, std::string_view message) {
+[[noreturn]] void fail(const Spec& spec, FilePosition at, std::string_view message) {
   throw InputError(fmt::format("{}:{}:{}: {}", spec.source, at.line, at.column, message));
 }
 

@@ -1,12 +1,15 @@
 #include "sweeps/spec/preview.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "sweeps/spec/spec_values.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -47,14 +50,14 @@ void merge_axes(toml::table& overlay, toml::table& axes, const std::string& pref
 }
 
 /// Complains about the first axis that no block has.
-void check_axes(const SpecReader& read, const toml::table& overlay, const std::string& prefix,
+void check_axes(const TableReader& preview, const toml::table& overlay, const std::string& prefix,
                 const std::set<std::string>& used) {
   for (const auto& [key, node] : overlay) {
     const std::string name = prefix + std::string(key.str());
     if (is_group(node)) {
-      check_axes(read, *node.as_table(), name + ".", used);
+      check_axes(preview, *node.as_table(), name + ".", used);
     } else if (!used.contains(name)) {
-      read.fail(node, fmt::format("no block of the spec has the axis {}", name));
+      preview.fail(place_of(node), fmt::format("no block of the spec has the axis {}", name));
     }
   }
 }
@@ -66,12 +69,12 @@ std::string name_of(const toml::table& block) {
 /// One spec on its way to its preview.
 class Preview {
  public:
-  Preview(const SpecReader& read, const std::function<toml::table()>& parse)
-      : read_(read), parse_(parse), spec_(parse()), checked_(fresh()) {
-    read_.allow(checked_,
-                {"title", "description", "metrics", "timeout_s", "timing", "reference", "sizes", "scenes", "axes",
-                 "omit", "run"},
-                "preview");
+  Preview(const TomlFile& file, const std::function<toml::table()>& parse)
+      : file_(file), parse_(parse), spec_(parse()), checked_(fresh()), preview_(file, checked_, "preview") {
+    for (const char* key : {"title", "description", "metrics", "timeout_s", "timing", "reference", "sizes", "scenes",
+                            "axes", "omit", "run"})
+      preview_.node(key);
+    preview_.finish();
   }
 
   toml::table apply() {
@@ -91,8 +94,8 @@ class Preview {
  private:
   toml::table fresh() const {
     toml::table spec = parse_();
-    if (!spec.contains("preview")) read_.fail(Position{1, 1}, "the spec has no [preview]");
-    read_.table(spec, "preview");  // complains when it is something else
+    if (!spec.contains("preview")) throw file_.error({1, 1}, "the spec has no [preview]");
+    TableReader(file_, spec).table("preview");  // complains when it is something else
     return std::move(*spec.get_as<toml::table>("preview"));
   }
 
@@ -114,11 +117,11 @@ class Preview {
   }
 
   void omit_blocks() {
-    for (const SpecReader::Text& name : read_.texts(checked_, "omit", true)) {
-      read_.one_of(*name.node, name.value, block_names(), "block");
+    for (const PlacedText& name : distinct_texts(preview_, "omit", Need::optional, true)) {
+      preview_.one_of(name.at, "block", name.text, block_names());
       toml::array& runs = *spec_.get_as<toml::array>("run");
       runs.erase(std::find_if(runs.cbegin(), runs.cend(), [&](const toml::node& node) {
-        return node.is_table() && name_of(*node.as_table()) == name.value;
+        return node.is_table() && name_of(*node.as_table()) == name.text;
       }));
     }
   }
@@ -149,36 +152,37 @@ class Preview {
 
   /// Every name of the overlay must be one of the spec.
   void check_used() {
-    if (const toml::table* axes = read_.table(checked_, "axes")) check_axes(read_, *axes, "", used_axes_);
+    if (preview_.table("axes")) check_axes(preview_, *checked_.get_as<toml::table>("axes"), "", used_axes_);
     if (const toml::table* stand_ins = checked_.get_as<toml::table>("scenes")) {
       for (const auto& [scene, stand_in] : *stand_ins) {
-        if (!stand_in.is_string()) read_.fail(stand_in, "a scene's stand-in is the name of a scene");
+        if (!stand_in.is_string()) preview_.fail(place_of(stand_in), "a scene's stand-in is the name of a scene");
         if (!used_scenes_.contains(std::string(scene.str())))
-          read_.fail(stand_in, fmt::format("no block of the spec has the scene '{}'", scene.str()));
+          preview_.fail(place_of(stand_in), fmt::format("no block of the spec has the scene '{}'", scene.str()));
       }
     } else {
-      read_.texts(checked_, "scenes", false);
+      distinct_texts(preview_, "scenes");
     }
-    read_.texts(checked_, "sizes", false);
-    if (const toml::table* runs = read_.table(checked_, "run")) {
-      for (const auto& [name, keys] : *runs) {
-        read_.one_of(keys, std::string(name.str()), block_names(), "block");
-        if (!keys.is_table()) read_.fail(keys, fmt::format("preview.run.{} is a table of a block's keys", name.str()));
+    distinct_texts(preview_, "sizes");
+    if (std::optional<TableReader> runs = preview_.table("run")) {
+      for (const std::string& name : runs->keys()) {
+        preview_.one_of(runs->place(name), "block", name, block_names());
+        runs->table(name);  // complains when it is something else
       }
     }
   }
 
-  const SpecReader& read_;
+  const TomlFile& file_;
   const std::function<toml::table()>& parse_;
   toml::table spec_;
   toml::table checked_;  ///< the overlay as it was read, for its complaints
+  TableReader preview_;
   std::set<std::string> used_axes_, used_scenes_;
 };
 
 }  // namespace
 
-toml::table preview_of(const SpecReader& read, const std::function<toml::table()>& parse) {
-  return Preview(read, parse).apply();
+toml::table preview_of(const TomlFile& file, const std::function<toml::table()>& parse) {
+  return Preview(file, parse).apply();
 }
 
 }  // namespace pellucid::sweeps

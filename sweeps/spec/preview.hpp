@@ -4,7 +4,7 @@
 
 #include <toml++/toml.h>
 
-#include "sweeps/spec/spec_reader.hpp"
+#include "algorithms/scene/toml/toml_reader.hpp"
 
 namespace pellucid::sweeps {
 
@@ -12,6 +12,6 @@ namespace pellucid::sweeps {
 /// called more than once, since a node keeps its place in the file only while it is moved, not when it is copied.
 /// Throws InputError with the place for an overlay that is missing, has an unknown key, or names a block, scene or axis
 /// that the spec lacks.
-toml::table preview_of(const SpecReader&, const std::function<toml::table()>& parse);
+toml::table preview_of(const TomlFile&, const std::function<toml::table()>& parse);
 
 }  // namespace pellucid::sweeps

@@ -7,23 +7,18 @@
 #include <vector>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/toml/toml_reader.hpp"
 #include "sweeps/spec/catalogue.hpp"
 #include "sweeps/spec/reference_settings.hpp"
 
 /// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the catalogue.
 namespace pellucid::sweeps {
 
-/// A line and column of the spec, 1-based.
-struct Position {
-  unsigned line = 0;
-  unsigned column = 0;
-};
-
 /// One swept parameter: a technique's, `scene.…`, `frame.…` or `shadow.…`, with values of the parameter's own type.
 struct Axis {
   std::string name;
   std::vector<Value> values;
-  Position at;
+  FilePosition at;
 };
 
 struct FixedValue {
@@ -33,7 +28,7 @@ struct FixedValue {
 
 struct Constraint {
   std::string text;
-  Position at;
+  FilePosition at;
 };
 
 /// Which picture of each point stays beside the store.
@@ -73,7 +68,7 @@ struct RunBlock {
   bool baseline = false;  ///< its first point is re-measured during the sweep
   TimingLimits timing;
   ReferenceSettings reference;
-  Position at;
+  FilePosition at;
 };
 
 struct Spec {

@@ -12,19 +12,21 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
 #include "gl/error.hpp"
 #include "sweeps/spec/design.hpp"
 #include "sweeps/spec/plan.hpp"
+#include "sweeps/spec/spec_values.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
 /// The choices of one block: every pair of technique and scene, whose tables must all know an axis.
 struct Owners {
-  const SpecReader& read;
+  const TableReader& run;
   const Catalogue& catalogue;
   const RunBlock& block;
 
@@ -54,14 +56,14 @@ struct Owners {
   using Found = std::vector<std::pair<std::string, ParameterInfo>>;
 
   /// The parameter in every table, each with its owner's name; complains at the key.
-  Found find(const SpecReader::Entry& entry) const {
+  Found find(const NamedValue& entry) const {
     const std::size_t dot = entry.name.find('.');
     const std::string bare = dot == std::string::npos ? entry.name : entry.name.substr(dot + 1);
     Found found;
     for (const Owner& owner : owners_of(entry.name)) {
       const auto info =
           std::find_if(owner.infos.begin(), owner.infos.end(), [&](const auto& i) { return i.name == bare; });
-      if (info == owner.infos.end()) read.fail(entry.at, unknown_parameter(bare, owner.label, owner.infos).what());
+      if (info == owner.infos.end()) run.fail(entry.at, unknown_parameter(bare, owner.label, owner.infos).what());
       found.emplace_back(owner.label, *info);
     }
     return found;
@@ -73,7 +75,7 @@ struct Owners {
       try {
         result = checked(info, value, label);
       } catch (const InputError& e) {
-        read.fail(node, e.what());
+        run.fail(place_of(node), e.what());
       }
     }
     return result;
@@ -81,51 +83,43 @@ struct Owners {
 };
 
 /// `design = { kind = "sobol", count = 64, seed = 1 }`
-std::optional<Design> read_design(const SpecReader& read, const toml::table& block) {
-  const toml::table* table = read.table(block, "design");
-  if (table == nullptr) return std::nullopt;
-  read.allow(*table, {"kind", "count", "seed"}, "design");
+std::optional<Design> read_design(TableReader& run) {
+  std::optional<TableReader> table = run.table("design");
+  if (!table) return std::nullopt;
   Design design;
-  std::string kind = "sobol";
-  if (read.text(*table, "kind", kind)) {
-    read.one_of(*table->get("kind"), kind, {"random", "latin_hypercube", "sobol"}, "kind");
-  }
-  design.kind = kind == "random"            ? DesignKind::random
-                : kind == "latin_hypercube" ? DesignKind::latin_hypercube
-                                            : DesignKind::sobol;
-  if (!read.integer(*table, "count", 1, static_cast<int>(kMaxPoints), design.count)) {
-    read.fail(*table, "design lacks `count`, the number of its points");
-  }
+  constexpr DesignKind kKinds[] = {DesignKind::random, DesignKind::latin_hypercube, DesignKind::sobol};
+  design.kind = kKinds[table->choice("kind", {"random", "latin_hypercube", "sobol"}, 2)];
+  table->integer("count", design.count, 1, static_cast<int>(kMaxPoints), Need::required);
   int seed = 1;
-  read.integer(*table, "seed", 0, std::numeric_limits<int>::max(), seed);
+  table->integer("seed", seed, 0, std::numeric_limits<int>::max());
   design.seed = static_cast<std::uint64_t>(seed);
+  table->finish();
   return design;
 }
 
 /// Reads [run.axes] and tells which axes walk together.
 class AxesReader {
  public:
-  AxesReader(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block)
-      : read_(read), table_(table), block_(block), owners_{read, catalogue, block}, design_(read_design(read, table)) {
-    std::string combine = "grid";
-    if (!read.text(table, "combine", combine)) return;
-    read.one_of(*table.get("combine"), combine, {"grid", "zip"}, "combine");
-    whole_zip_ = combine == "zip";
+  AxesReader(TableReader& run, const Catalogue& catalogue, RunBlock& block)
+      : run_(run), block_(block), owners_{run, catalogue, block}, design_(read_design(run)) {
+    whole_zip_ = run.choice("combine", {"grid", "zip"}, 0) == 1;
     if (whole_zip_ && design_) {
-      read.fail(*table.get("combine"), "a design spreads its axes itself; zip them with others by `zip`");
+      run.fail(run.place("combine"), "a design spreads its axes itself; zip them with others by `zip`");
     }
   }
 
   void read_all() {
     read_zips();
-    if (const toml::table* axes = read_.table(table_, "axes")) {
-      for (const SpecReader::Entry& entry : read_.entries(*axes))
-        block_.axes.push_back({entry.name, read_axis(entry), entry.at});
+    if (std::optional<TableReader> axes = run_.table("axes")) {
+      for (NamedValue& entry : named_values(*axes)) {
+        std::vector<Value> values = read_axis(entry);
+        block_.axes.push_back({entry.name, std::move(values), entry.at});
+      }
     }
-    if (whole_zip_ && block_.axes.empty()) read_.fail(block_.at, "combine = \"zip\" needs [run.axes]");
+    if (whole_zip_ && block_.axes.empty()) run_.fail(block_.at, "combine = \"zip\" needs [run.axes]");
     if (design_ && drawn_.empty()) {
-      read_.fail(*table_.get("design"),
-                 "the design has no axis; one is a range of [run.axes] without `steps`: { from, to }");
+      run_.fail(run_.place("design"),
+                "the design has no axis; one is a range of [run.axes] without `steps`: { from, to }");
     }
     draw();
     make_walks();
@@ -137,43 +131,46 @@ class AxesReader {
     std::size_t axis;
     Owners::Found infos;
     AxisRange range;
-    const SpecReader::Entry entry;
+    NamedValue entry;
   };
 
   /// `zip = [["hulls", "samples"], …]`: names of axes that walk together within the grid.
   void read_zips() {
-    const toml::node* node = table_.get("zip");
+    const toml::node* node = run_.node("zip");
     if (node == nullptr) return;
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty() || !list->is_homogeneous(toml::node_type::array)) {
-      read_.fail(*node, "zip is a list of lists of axes, for example [[\"hulls\", \"samples\"]]");
+      run_.fail(place_of(*node), "zip is a list of lists of axes, for example [[\"hulls\", \"samples\"]]");
     }
-    if (whole_zip_) read_.fail(*node, "combine = \"zip\" zips all axes already");
+    if (whole_zip_) run_.fail(place_of(*node), "combine = \"zip\" zips all axes already");
     for (const toml::node& inner : *list) {
-      std::vector<SpecReader::Text> names = read_.texts(inner, "zip", false);
-      if (names.size() < 2) read_.fail(inner, "a zip needs two axes at least");
-      for (const SpecReader::Text& name : names) {
-        for (const std::vector<SpecReader::Text>& other : zips_) {
-          if (std::any_of(other.begin(), other.end(), [&](const auto& o) { return o.value == name.value; })) {
-            read_.fail(*name.node, fmt::format("{} is in a zip already", name.value));
-          }
-        }
+      std::vector<PlacedText> zip;
+      for (const toml::node& name : *inner.as_array()) {
+        if (!name.is_string()) run_.fail(place_of(name), fmt::format("zip names axes, not {}", type_name(name)));
+        const std::string& axis = name.as_string()->get();
+        const auto has = [&](const auto& names) {
+          return std::any_of(names.begin(), names.end(), [&](const PlacedText& other) { return other.text == axis; });
+        };
+        if (has(zip) || std::any_of(zips_.begin(), zips_.end(), has))
+          run_.fail(place_of(name), fmt::format("{} is in a zip already", axis));
+        zip.push_back({axis, place_of(name)});
       }
-      zips_.push_back(std::move(names));
+      if (zip.size() < 2) run_.fail(place_of(inner), "a zip needs two axes at least");
+      zips_.push_back(std::move(zip));
     }
   }
 
   bool zipped(const std::string& axis) const {
     return whole_zip_ || std::any_of(zips_.begin(), zips_.end(), [&](const auto& zip) {
-             return std::any_of(zip.begin(), zip.end(), [&](const auto& name) { return name.value == axis; });
+             return std::any_of(zip.begin(), zip.end(), [&](const auto& name) { return name.text == axis; });
            });
   }
 
-  std::vector<Value> read_axis(const SpecReader::Entry& entry) {
+  std::vector<Value> read_axis(NamedValue& entry) {
     auto infos = owners_.find(entry);
     std::vector<Value> values;
-    if (const toml::table* table = entry.node->as_table()) {
-      const AxisRange range = read_.range(*table, entry.name);
+    if (entry.table) {
+      const AxisRange range = read_range(*entry.table);
       const bool drawn = design_ && !range.steps;
       try {
         if (drawn) {
@@ -182,7 +179,7 @@ class AxesReader {
           values = expand_range(infos.front().second, range);
         }
       } catch (const InputError& e) {
-        read_.fail(*entry.node, fmt::format("{}: {}", entry.name, e.what()));
+        run_.fail(place_of(*entry.node), fmt::format("{}: {}", entry.name, e.what()));
       }
       if (drawn) {
         for (const double end : {range.from, range.to})
@@ -196,17 +193,17 @@ class AxesReader {
     }
     const toml::array* list = entry.node->as_array();
     if (list == nullptr) {
-      read_.fail(*entry.node,
-                 fmt::format("axis {} is a list of values or a range {{ from, to, steps | log2 }}; a single value "
-                             "belongs under [run.fixed]",
-                             entry.name));
+      run_.fail(place_of(*entry.node),
+                fmt::format("axis {} is a list of values or a range {{ from, to, steps | log2 }}; a single value "
+                            "belongs under [run.fixed]",
+                            entry.name));
     }
-    if (list->empty()) read_.fail(*list, fmt::format("axis {} lists no value", entry.name));
+    if (list->empty()) run_.fail(place_of(*list), fmt::format("axis {} lists no value", entry.name));
     for (const toml::node& node : *list) {
-      Value value = owners_.check(infos, node, read_.value(node, entry.name));
+      Value value = owners_.check(infos, node, value_of(run_, node, entry.name));
       // Walked together with other axes, a value may well come again.
       if (!zipped(entry.name) && std::find(values.begin(), values.end(), value) != values.end()) {
-        read_.fail(node, fmt::format("axis {} lists {} twice", entry.name, to_text(value)));
+        run_.fail(place_of(node), fmt::format("axis {} lists {} twice", entry.name, to_text(value)));
       }
       values.push_back(std::move(value));
     }
@@ -214,11 +211,11 @@ class AxesReader {
   }
 
   /// A drawn axis never lies outside of its ends, so these alone are checked here.
-  void check_end(const SpecReader::Entry& entry, const Owners::Found& infos, double end) const {
+  void check_end(const NamedValue& entry, const Owners::Found& infos, double end) const {
     const bool whole = infos.front().second.type == ValueType::integer;
     if (whole && end != std::round(end)) {
-      read_.fail(*entry.node, fmt::format("{}: the range ends at {}, and {} is an integer", entry.name, end,
-                                          infos.front().second.name));
+      run_.fail(place_of(*entry.node), fmt::format("{}: the range ends at {}, and {} is an integer", entry.name, end,
+                                                   infos.front().second.name));
     }
     owners_.check(infos, *entry.node, whole ? Value(static_cast<std::int64_t>(end)) : Value(end));
   }
@@ -226,7 +223,7 @@ class AxesReader {
   void draw() {
     if (drawn_.empty()) return;
     if (drawn_.size() > kMaxDesignAxes) {
-      read_.fail(*table_.get("design"), fmt::format("a design may have {} axes", kMaxDesignAxes));
+      run_.fail(run_.place("design"), fmt::format("a design may have {} axes", kMaxDesignAxes));
     }
     for (const std::vector<double>& point : unit_points(*design_, drawn_.size())) {
       for (std::size_t d = 0; d < drawn_.size(); ++d) {
@@ -260,32 +257,30 @@ class AxesReader {
       }
       check_lengths(block_.walks.back());
     }
-    for (const std::vector<SpecReader::Text>& zip : zips_) {
-      for (const SpecReader::Text& name : zip)
+    for (const std::vector<PlacedText>& zip : zips_) {
+      for (const PlacedText& name : zip)
         static_cast<void>(axis_named(name));
     }
   }
 
-  std::size_t axis_named(const SpecReader::Text& name) const {
+  std::size_t axis_named(const PlacedText& name) const {
     std::vector<std::string> names;
     for (const Axis& axis : block_.axes)
       names.push_back(axis.name);
-    read_.one_of(*name.node, name.value, names, "axis");
-    const std::size_t axis =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), name.value) - names.begin());
+    run_.one_of(name.at, "axis", name.text, names);
+    const std::size_t axis = static_cast<std::size_t>(std::find(names.begin(), names.end(), name.text) - names.begin());
     if (std::any_of(drawn_.begin(), drawn_.end(), [&](const Drawn& d) { return d.axis == axis; })) {
-      read_.fail(*name.node,
-                 fmt::format("{} is drawn by the design, which walks its axes together already", name.value));
+      run_.fail(name.at, fmt::format("{} is drawn by the design, which walks its axes together already", name.text));
     }
     return axis;
   }
 
   Walk zip_of(std::size_t axis) const {
-    for (const std::vector<SpecReader::Text>& zip : zips_) {
-      if (std::none_of(zip.begin(), zip.end(), [&](const auto& n) { return n.value == block_.axes[axis].name; }))
+    for (const std::vector<PlacedText>& zip : zips_) {
+      if (std::none_of(zip.begin(), zip.end(), [&](const auto& n) { return n.text == block_.axes[axis].name; }))
         continue;
       Walk axes;
-      for (const SpecReader::Text& name : zip)
+      for (const PlacedText& name : zip)
         axes.push_back(axis_named(name));
       std::sort(axes.begin(), axes.end());
       return axes;
@@ -298,41 +293,39 @@ class AxesReader {
     for (const std::size_t i : walk) {
       const Axis& axis = block_.axes[i];
       if (axis.values.size() != first.values.size()) {
-        read_.fail(axis.at, fmt::format("a zip needs axes of equal length: {} has {} values, {} has {}", axis.name,
-                                        axis.values.size(), first.name, first.values.size()));
+        run_.fail(axis.at, fmt::format("a zip needs axes of equal length: {} has {} values, {} has {}", axis.name,
+                                       axis.values.size(), first.name, first.values.size()));
       }
     }
   }
 
-  const SpecReader& read_;
-  const toml::table& table_;
+  TableReader& run_;
   RunBlock& block_;
   Owners owners_;
   std::optional<Design> design_;
   bool whole_zip_ = false;
-  std::vector<std::vector<SpecReader::Text>> zips_;
+  std::vector<std::vector<PlacedText>> zips_;
   std::vector<Drawn> drawn_;
 };
 
-void read_fixed(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
-  const toml::table* fixed = read.table(table, "fixed");
-  if (fixed == nullptr) return;
-  const Owners owners{read, catalogue, block};
-  for (const SpecReader::Entry& entry : read.entries(*fixed)) {
+void read_fixed(TableReader& run, const Catalogue& catalogue, RunBlock& block) {
+  std::optional<TableReader> fixed = run.table("fixed");
+  if (!fixed) return;
+  const Owners owners{run, catalogue, block};
+  for (const NamedValue& entry : named_values(*fixed)) {
     const Owners::Found infos = owners.find(entry);
     const auto same = [&](const Axis& axis) { return axis.name == entry.name; };
-    if (std::any_of(block.axes.begin(), block.axes.end(), same)) {
-      read.fail(entry.at, fmt::format("{} is an axis of this block already", entry.name));
-    }
-    block.fixed.push_back({entry.name, owners.check(infos, *entry.node, read.value(*entry.node, entry.name))});
+    if (std::any_of(block.axes.begin(), block.axes.end(), same))
+      run.fail(entry.at, fmt::format("{} is an axis of this block already", entry.name));
+    block.fixed.push_back({entry.name, owners.check(infos, *entry.node, value_of(run, *entry.node, entry.name))});
   }
 }
 
 }  // namespace
 
-void read_axes(const SpecReader& read, const toml::table& table, const Catalogue& catalogue, RunBlock& block) {
-  AxesReader(read, table, catalogue, block).read_all();
-  read_fixed(read, table, catalogue, block);
+void read_axes(TableReader& run, const Catalogue& catalogue, RunBlock& block) {
+  AxesReader(run, catalogue, block).read_all();
+  read_fixed(run, catalogue, block);
 }
 
 }  // namespace pellucid::sweeps

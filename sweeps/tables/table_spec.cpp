@@ -125,7 +125,7 @@ std::string read_sweep(TableReader& reader, const Paper& paper) {
 /// Tries every text that names variables, so that a mistake is found before there are rows.
 void check_texts(const TableSpec& spec) {
   const TomlFile& file = spec.entry.paper->file;
-  const auto at = [&](Place place, const auto& f) {
+  const auto at = [&](FilePosition place, const auto& f) {
     try {
       f();
     } catch (const InputError& e) {

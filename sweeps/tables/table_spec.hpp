@@ -20,7 +20,7 @@ namespace pellucid::sweeps {
 /// A column, a group or a family: which of the sweep's rows it takes, and what its texts may name.
 struct TableEntry {
   std::string name;  ///< a template
-  Place at;
+  FilePosition at;
   std::vector<std::pair<std::string, std::vector<Value>>> where;  ///< a field and the values it may have
   Variables variables;                                            ///< `with`, and the fields that have one value
 };
@@ -42,7 +42,7 @@ struct TableLine {
     outcome    ///< "converged", …: for CSV
   };
   Kind kind = Kind::quantity;
-  Place at;
+  FilePosition at;
   std::string label;          ///< a template; empty: the quantity's heading
   std::string show;           ///< a template, or a variable's name
   std::string quantity;       ///< a name, or a template of one

@@ -140,10 +140,11 @@ TEST(Design, LeavesOutThePointsThatComeAgain) {
 }
 
 TEST(Design, ErrorsNameThePlace) {
-  EXPECT_EQ(error_of("design = { kind = 'sobel', count = 4 }\n[run.axes]\nhulls={from=1,to=4}\n"),
-            "s.toml:6:19: unknown kind 'sobel'; did you mean 'sobol'?");
+  EXPECT_EQ(
+      error_of("design = { kind = 'sobel', count = 4 }\n[run.axes]\nhulls={from=1,to=4}\n"),
+      "s.toml:6:19: run[0].design.kind = 'sobel' is not one of random, latin_hypercube, sobol; did you mean 'sobol'?");
   EXPECT_EQ(error_of("design = { kind = 'sobol' }\n[run.axes]\nhulls={from=1,to=4}\n"),
-            "s.toml:6:10: design lacks `count`, the number of its points");
+            "s.toml:6:10: 'count' is missing in run[0].design");
   EXPECT_EQ(error_of("design = { count = 4 }\n[run.axes]\nhulls=[1,4]\n"),
             "s.toml:6:10: the design has no axis; one is a range of [run.axes] without `steps`: { from, to }");
   EXPECT_EQ(error_of("design = { count = 4 }\n[run.axes]\nhulls={from=1,to=400}\n"),

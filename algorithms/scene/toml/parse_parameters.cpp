@@ -53,7 +53,7 @@ void parse_numbers(TableReader& reader, ParameterInfo& info) {
     info.default_value = otherwise;
 }
 
-const DriveTarget& find_target(TableReader& reader, const std::string& wanted, Place place,
+const DriveTarget& find_target(TableReader& reader, const std::string& wanted, FilePosition place,
                                const std::vector<DriveTarget>& targets) {
   std::vector<std::string> names;
   for (const DriveTarget& target : targets) {

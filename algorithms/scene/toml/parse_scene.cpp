@@ -38,7 +38,7 @@ void parse_scene(std::string_view text, const std::filesystem::path& folder, Sce
 }
 
 void SceneDescription::warn(const TableReader& reader, std::string_view key, std::string_view message) {
-  const Place place = reader.place(key);
+  const FilePosition place = reader.place(key);
   facts.warnings.push_back(
       fmt::format("{}:{}:{}: {}.{}: {}", file.shown, place.line, place.column, reader.path(), key, message));
 }

@@ -34,7 +34,7 @@ struct Placement {
 enum class MeshKind { file, sphere, box, plane, cylinder, cone, torus, star, teapot, relief, tiles };
 struct MeshDescription {
   std::string name;
-  Place place;
+  FilePosition place;
   MeshKind kind = MeshKind::sphere;
   std::optional<Mesh> from_file;  ///< moved into the scene when it is evaluated
   double radius = 1, height = 1, minor_radius = 0.25, scale = 1;
@@ -59,7 +59,7 @@ struct MaterialDescription {
 
 struct InstanceDescription {
   std::string name;
-  Place place;
+  FilePosition place;
   int mesh = 0, material = 0;
   Placement placement;
   glm::dvec3 scale{1.0}, tint{1.0};
@@ -88,7 +88,7 @@ struct ReliefAirDescription {
 };
 struct ReliefDescription {
   std::string name;
-  Place place;
+  FilePosition place;
   glm::dvec2 tiling{1.0};
   bool cut = true;
   ReliefLayerDescription solid;
@@ -101,7 +101,7 @@ struct ReliefDescription {
 
 struct LightDescription {
   std::string name;
-  Place place;
+  FilePosition place;
   LightKind kind = LightKind::directional;
   glm::dvec3 position{0.0};
   std::optional<MotionPath> position_path;
@@ -118,7 +118,7 @@ struct LightDescription {
 
 struct ViewDescription {
   std::string name;
-  Place place;
+  FilePosition place;
   glm::dvec3 eye{0.0}, target{0.0}, up{0.0, 1.0, 0.0};
   std::optional<MotionPath> eye_path, target_path;
   std::optional<Spin> spin;  ///< of the eye about the target
@@ -126,13 +126,13 @@ struct ViewDescription {
 };
 
 struct ForestDescription {
-  Place place;
+  FilePosition place;
   glm::dvec2 extent{60.0}, clearing{0.0};
   double trees = 300, clearing_radius = 4, relief_m = 1.5, seed = 1;
 };
 
 struct TransferDescription {
-  Place place;
+  FilePosition place;
   double density = 0, extinction = 0;
   glm::dvec3 albedo{1.0};
 };
@@ -140,7 +140,7 @@ struct TransferDescription {
 enum class VolumeKind { constant, fog, ball, smoke, water, file };
 struct VolumeDescription {
   std::string name;
-  Place place;
+  FilePosition place;
   VolumeKind kind = VolumeKind::constant;
   glm::dvec3 voxels{128.0};
   bool by_corners = false;
@@ -166,9 +166,9 @@ struct EnvironmentDescription {
 enum class DriveMode { set, scale, add };
 struct ParameterDescription {
   ParameterInfo info;
-  Place place;
+  FilePosition place;
   DriveMode mode = DriveMode::set;
-  std::vector<std::pair<std::string, Place>> drives;
+  std::vector<std::pair<std::string, FilePosition>> drives;
 };
 
 /// Deques, so that what parameters write never moves.
@@ -261,7 +261,7 @@ void evaluate_scattering(const SceneDescription&, Scene&);
 void evaluate_transfer(const SceneDescription&, Scene&);
 void evaluate_medium(const SceneDescription&, double time_s, Scene&);
 /// Shared by instances and the volume.
-glm::dmat3 turn(const SceneDescription&, const Placement&, Place, double time_s);
+glm::dmat3 turn(const SceneDescription&, const Placement&, FilePosition, double time_s);
 glm::dvec3 position_at(const glm::dvec3& position, const std::optional<MotionPath>&, double time_s);
 /// Every part, in order.
 std::vector<Affected> all_parts(const SceneDescription&);

@@ -45,7 +45,8 @@ void SceneSource::connect() {
   }
 }
 
-void SceneSource::connect(std::size_t index, const DriveTarget& target, const std::pair<std::string, Place>& drive) {
+void SceneSource::connect(std::size_t index, const DriveTarget& target,
+                          const std::pair<std::string, FilePosition>& drive) {
   const ParameterDescription& parameter = description_->parameters[index];
   const TomlFile& file = description_->file;
   const auto refuse = [&](std::string_view message) {

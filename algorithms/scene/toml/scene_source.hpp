@@ -35,7 +35,7 @@ class SceneSource {
     std::vector<std::size_t> set, scale, add;  // parameters
   };
   void connect();
-  void connect(std::size_t parameter, const DriveTarget& target, const std::pair<std::string, Place>& drive);
+  void connect(std::size_t parameter, const DriveTarget& target, const std::pair<std::string, FilePosition>& drive);
   Range bounds(const Driven&) const;
   void write(const Driven&) const;
   double number(std::size_t parameter) const;

@@ -1,6 +1,7 @@
 #include "algorithms/scene/toml/toml_reader.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -17,17 +18,17 @@ namespace pellucid {
 
 namespace {
 
-Place begin_of(const toml::source_region& region) {
+FilePosition begin_of(const toml::source_region& region) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
 }  // namespace
 
-Place place_of(const toml::node& node) {
+FilePosition place_of(const toml::node& node) {
   return begin_of(node.source());
 }
 
-InputError TomlFile::error(Place place, std::string_view message) const {
+InputError TomlFile::error(FilePosition place, std::string_view message) const {
   return InputError(fmt::format("{}:{}:{}: {}", shown, place.line, place.column, message));
 }
 
@@ -48,9 +49,9 @@ std::string read_toml_text(const std::string& path, std::string_view what, std::
   return text;
 }
 
-std::shared_ptr<const toml::table> parse_toml(std::string_view text, const TomlFile& file) {
+std::shared_ptr<toml::table> parse_toml(std::string_view text, const TomlFile& file) {
   try {
-    return std::make_shared<const toml::table>(toml::parse(text, file.shown));
+    return std::make_shared<toml::table>(toml::parse(text, file.shown));
   } catch (const toml::parse_error& error) {
     throw file.error(begin_of(error.source()), error.description());
   }
@@ -93,7 +94,7 @@ std::string wrong_type(std::string_view shown, std::string_view wanted, const to
 
 }  // namespace
 
-void TableReader::fail(Place at, std::string_view message) const {
+void TableReader::fail(FilePosition at, std::string_view message) const {
   throw file_->error(at, message);
 }
 
@@ -101,13 +102,21 @@ void TableReader::fail(std::string_view key, std::string_view message) const {
   fail(place(key), fmt::format("{}: {}", dotted(key), message));
 }
 
-Place TableReader::place_of_table() const {
+FilePosition TableReader::place_of_table() const {
   return place_of(*table_);
 }
 
-Place TableReader::place(std::string_view key) const {
+FilePosition TableReader::place(std::string_view key) const {
   const toml::node* node = table_->get(key);
   return node != nullptr ? place_of(*node) : place_of_table();
+}
+
+FilePosition TableReader::place_of_key(std::string_view key) const {
+  for (auto&& [own, node] : *table_) {
+    if (own.str() == key) return begin_of(own.source());
+  }
+  assert(false);
+  return place_of_table();
 }
 
 std::string TableReader::dotted(std::string_view key) const {
@@ -138,6 +147,15 @@ void TableReader::require(std::string_view key) {
   for (auto&& [other, node] : *table_) {
     if (other.str() == near) fail(begin_of(other.source()), fmt::format("{}; is it '{}'?", missing, near));
   }
+}
+
+void TableReader::one_of(FilePosition place, std::string_view what, std::string_view value,
+                         std::span<const std::string> names) const {
+  if (std::find(names.begin(), names.end(), value) != names.end()) return;
+  const std::string near = nearest_name(value, names);
+  fail(place, fmt::format("unknown {} '{}'; {}", what, value,
+                          near.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
+                                       : fmt::format("did you mean '{}'?", near)));
 }
 
 void TableReader::exclude(std::string_view key, std::string_view other) {
@@ -182,6 +200,13 @@ void TableReader::integer(std::string_view key, double& value, NumberRange range
   const toml::node* node = find(key, need);
   if (node != nullptr) value = scalar(*node, dotted(key), range, true);
   add_target(dotted(key), {&value}, range, true, node);
+}
+
+void TableReader::integer(std::string_view key, int& value, int min, int max, Need need) {
+  const toml::node* node = find(key, need);
+  if (node == nullptr) return;
+  const NumberRange range{static_cast<double>(min), static_cast<double>(max)};
+  value = static_cast<int>(scalar(*node, dotted(key), range, true));
 }
 
 void TableReader::components(std::string_view key, double* values, std::size_t count, NumberRange range, bool integer,
@@ -290,8 +315,8 @@ std::size_t TableReader::choice(std::string_view key, std::initializer_list<std:
   return static_cast<std::size_t>(it - choices.begin());
 }
 
-std::vector<std::pair<std::string, Place>> TableReader::texts(std::string_view key, Need need) {
-  std::vector<std::pair<std::string, Place>> result;
+std::vector<std::pair<std::string, FilePosition>> TableReader::texts(std::string_view key, Need need) {
+  std::vector<std::pair<std::string, FilePosition>> result;
   const toml::node* node = find(key, need);
   if (node == nullptr) return result;
   const toml::array* array = node->as_array();
@@ -320,7 +345,7 @@ TableReader TableReader::inner(const toml::table& table, std::string path) const
 }
 
 std::vector<std::string> TableReader::keys() const {
-  std::vector<std::pair<Place, std::string>> found;
+  std::vector<std::pair<FilePosition, std::string>> found;
   for (auto&& [key, node] : *table_)
     found.emplace_back(begin_of(key.source()), key.str());
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
@@ -348,8 +373,8 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(std::
   }
   // toml++ sorts by name; the order of the file tells which view is the first.
   std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-    const Place pa = a.second.place();
-    const Place pb = b.second.place();
+    const FilePosition pa = a.second.place();
+    const FilePosition pb = b.second.place();
     return std::pair(pa.line, pa.column) < std::pair(pb.line, pb.column);
   });
   return result;

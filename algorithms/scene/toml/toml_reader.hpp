@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,25 +26,25 @@ class table;
 /// known by its dotted path to the scene's parameters. Every error is an InputError "file:line:column: message".
 namespace pellucid {
 
-/// A place in the file, 1-based.
-struct Place {
+/// A line and column of a text file, 1-based.
+struct FilePosition {
   int line = 0;
   int column = 0;
 };
-Place place_of(const toml::node&);
+FilePosition place_of(const toml::node&);
 /// The name of its kind, for an error: "a table", "a string" and so on.
 std::string_view type_name(const toml::node&);
 
 /// The name of the file, as errors show it.
 struct TomlFile {
   std::string shown;
-  InputError error(Place, std::string_view message) const;
+  InputError error(FilePosition, std::string_view message) const;
 };
 
 /// The text of a regular file of at most so many bytes. Throws InputError "cannot read WHAT 'PATH': reason".
 std::string read_toml_text(const std::string& path, std::string_view what, std::uintmax_t most_bytes);
 /// Throws InputError with the place of what is no TOML.
-std::shared_ptr<const toml::table> parse_toml(std::string_view text, const TomlFile&);
+std::shared_ptr<toml::table> parse_toml(std::string_view text, const TomlFile&);
 
 /// Inclusive, unless `above_min`.
 struct NumberRange {
@@ -89,7 +90,7 @@ struct DriveTarget {
   NumberRange range;
   bool integer = false;
   bool given = false;  ///< by the file, at `place`; else the default
-  Place place;
+  FilePosition place;
   Affected affected;
   std::vector<Affected> also;  ///< what else changes, as a volume that follows a light
 };
@@ -109,8 +110,9 @@ class TableReader {
   void set_affected(std::optional<Affected> affected) { affected_ = affected; }
 
   bool has(std::string_view key) const;
-  Place place() const { return place_of_table(); }
-  Place place(std::string_view key) const;  ///< of the key's value; of the table without it
+  FilePosition place() const { return place_of_table(); }
+  FilePosition place(std::string_view key) const;         ///< of the key's value; of the table without it
+  FilePosition place_of_key(std::string_view key) const;  ///< of the key itself, which must be there
   const std::string& path() const { return path_; }
 
   void number(std::string_view key, double& value, NumberRange, Need = Need::optional);
@@ -126,11 +128,13 @@ class TableReader {
   void pair(std::string_view key, glm::dvec2& value, NumberRange, bool integers, Need = Need::optional);
   /// [[x, y, z], …]: one to `most` points, which drives know as key[0].x and so on. `values` must keep its size.
   void points(std::string_view key, std::vector<glm::dvec3>& values, NumberRange, std::size_t most);
+  /// A count that no parameter drives.
+  void integer(std::string_view key, int& value, int min, int max, Need = Need::optional);
   void boolean(std::string_view key, bool& value);
   void text(std::string_view key, std::string& value, Need = Need::optional);
   /// A text that is one of `choices`; returns its position.
   std::size_t choice(std::string_view key, std::initializer_list<std::string_view> choices, std::size_t otherwise);
-  std::vector<std::pair<std::string, Place>> texts(std::string_view key, Need = Need::optional);
+  std::vector<std::pair<std::string, FilePosition>> texts(std::string_view key, Need = Need::optional);
   /// The value itself, for what the calls above do not read; null when it is absent.
   const toml::node* node(std::string_view key, Need need = Need::optional) { return find(key, need); }
   /// Every key, in the order of the file.
@@ -141,17 +145,21 @@ class TableReader {
   std::vector<std::pair<std::string, TableReader>> named_tables(std::string_view key);
   std::vector<TableReader> tables(std::string_view key, Need = Need::optional);  ///< an array of tables
 
+  /// Complains at `place` about a value that is none of `names`: "unknown WHAT 'value'; did you mean …?".
+  void one_of(FilePosition place, std::string_view what, std::string_view value,
+              std::span<const std::string> names) const;
+
   void require(std::string_view key);
   /// Not both.
   void exclude(std::string_view key, std::string_view other);
   void finish();
 
-  [[noreturn]] void fail(Place, std::string_view message) const;
+  [[noreturn]] void fail(FilePosition, std::string_view message) const;
   /// "path.key: message"
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
 
  private:
-  Place place_of_table() const;
+  FilePosition place_of_table() const;
   std::string dotted(std::string_view key) const;
   const toml::node* find(std::string_view key, Need);
   double scalar(const toml::node&, const std::string& shown, NumberRange, bool integer) const;
