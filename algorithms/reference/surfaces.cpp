@@ -95,7 +95,9 @@ constexpr std::int64_t kSamplesAtOnce = 16;
 constexpr double kCausticRadius = 0.01;
 
 // Photons for the light that surfaces get through objects; none when nothing sends or bends light.
-std::optional<PhotonMap> trace_caustics(const Scene& scene, const SurfaceOptions& options) {
+std::optional<PhotonMap> trace_caustics(const Scene& scene, const SurfaceOptions& options, double& photons_s) {
+  if (!options.caustics) return std::nullopt;
+  const auto start = std::chrono::steady_clock::now();
   double radius_m = options.caustic_radius_m;
   if (radius_m <= 0.0) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -109,8 +111,10 @@ std::optional<PhotonMap> trace_caustics(const Scene& scene, const SurfaceOptions
   photons.reflections = options.reflections;
   photons.depth = options.depth;
   Photons landed = trace_photons(scene, {}, photons, true);
-  if (landed.deposits.empty()) return std::nullopt;
-  return PhotonMap(std::move(landed.deposits), radius_m);
+  std::optional<PhotonMap> map;
+  if (!landed.deposits.empty()) map.emplace(std::move(landed.deposits), radius_m);
+  photons_s = seconds_since(start);
+  return map;
 }
 
 void check_traceable(const Scene& scene, const SurfaceOptions& options) {
@@ -131,6 +135,207 @@ void check_traceable(const Scene& scene, const SurfaceOptions& options) {
   }
 }
 
+// Rays from the eye, between the clipping planes.
+class EyeRays {
+ public:
+  EyeRays(const Scene& scene, const Camera& camera, const Geometry& geometry, const RayTree& tree)
+      : camera_(camera), geometry_(geometry), tree_(tree) {
+    eye_.origin = glm::dvec3(camera.view.eye);
+    eye_.inside = tree.solids_at(eye_.origin);
+    forward_ = glm::normalize(glm::dvec3(camera.view.target) - eye_.origin);
+    solid_ = std::any_of(scene.materials.begin(), scene.materials.end(),
+                         [](const Material& m) { return m.kind == SurfaceKind::dielectric; });
+  }
+
+  /// Through a place of the picture, in pixels from its upper left corner.
+  TreeRay through(double x, double y) const {
+    TreeRay ray = eye_;
+    ray.direction = camera_.ray_direction(x, y);
+    // The clipping planes are at constant view depth.
+    const double per_depth = 1.0 / glm::dot(ray.direction, forward_);
+    ray.begin = static_cast<double>(camera_.view.near_m) * per_depth;
+    ray.end = static_cast<double>(camera_.view.far_m) * per_depth;
+    // The part that the near plane cuts off is not there, and the ray may begin inside of what it cuts open.
+    if (solid_ && geometry_.occluded(ray.origin, ray.direction, 0.0, ray.begin)) {
+      ray.inside = tree_.solids_at(ray.origin + ray.begin * ray.direction);
+      ray.unabsorbed_m = ray.begin;
+    }
+    return ray;
+  }
+
+ private:
+  const Camera& camera_;
+  const Geometry& geometry_;
+  const RayTree& tree_;
+  TreeRay eye_;
+  glm::dvec3 forward_{0.0};
+  bool solid_ = false;  // something to begin inside of
+};
+
+TreeLimits tree_limits(const SurfaceOptions& options) {
+  TreeLimits limits;
+  limits.reflections = options.reflections;
+  limits.depth = options.depth;
+  limits.cut = options.cut;
+  limits.entry_reflection = options.entry_reflection;
+  limits.both_sides = options.both_sides;
+  return limits;
+}
+
+// One picture by rays, from the scene's geometry to the layer.
+class SurfaceTracing {
+ public:
+  SurfaceTracing(const Scene& scene, const Camera& camera, const SurfaceOptions& options)
+      : scene_(scene),
+        camera_(camera),
+        options_(options),
+        start_(std::chrono::steady_clock::now()),
+        geometry_(scene),
+        light_(scene),
+        tree_(scene, geometry_),
+        walks_(scene, geometry_),
+        reliefs_(scene, geometry_, light_, {options.refract_light}),
+        eye_(scene, camera, geometry_, tree_),
+        limits_(tree_limits(options)),
+        places_(options.samples, options.seed),
+        translucent_(has_scattering(scene)),
+        build_s_(seconds_since(start_)),
+        caustics_(trace_caustics(scene, options, photons_s_)),
+        picture_(scene, camera, options, translucent_) {
+    layer_.radiance = Image(camera.width, camera.height, 3);
+    layer_.optical = Image(camera.width, camera.height, 1);
+    layer_.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  }
+
+  SurfaceLayer run() {
+    while (picture_.samples < options_.samples)
+      add_samples();
+    if (options_.samples > 1) find_distances();
+    summarise();
+    return std::move(layer_);
+  }
+
+ private:
+  // The next samples of every pixel: all of them, or so many that a picture which is kept while it grows is looked at.
+  void add_samples() {
+    const std::int64_t begin = picture_.samples;
+    const std::int64_t end = translucent_ ? std::min<std::int64_t>(options_.samples, begin + kSamplesAtOnce)
+                                          : std::int64_t{options_.samples};
+    const auto progress = [&](double share) {
+      options_.progress((static_cast<double>(begin) + share * static_cast<double>(end - begin)) / options_.samples);
+    };
+    tbb::combinable<Sums> sums;
+    for_pixels(camera_, options_.progress ? std::function<void(double)>(progress) : std::function<void(double)>(),
+               [&](int x, int y) { sample_pixel(x, y, begin, end, sums.local()); });
+    sums.combine_each([&](const Sums& sum) { picture_.tally.add(sum.tally); });
+    picture_.samples = end;
+    picture_.advance(end == options_.samples);
+  }
+
+  void sample_pixel(int x, int y, std::int64_t begin, std::int64_t end, Sums& sum) {
+    PixelSum& pixel = picture_.pixels[pixel_index(camera_, x, y)];
+    TreeTally tally;
+    for (auto s = static_cast<int>(begin); s < static_cast<int>(end); ++s) {
+      glm::dvec3 radiance(0.0);
+      const Hit first = follow(x, y, s, sum.scratch, tally, pixel, radiance);
+      pixel.radiance.add(radiance);
+      layer_.distance_m[pixel_index(camera_, x, y)] = first.distance;
+      if (first.instance != nullptr && optical(scene_, *first.instance)) ++pixel.met_optical;
+    }
+    pixel.cut_weight += tally.cut_weight;
+    sum.tally.add(tally);
+  }
+
+  // One ray's light; returns what it meets first.
+  Hit follow(int x, int y, int sample, RayTree::Scratch& scratch, TreeTally& tally, PixelSum& pixel,
+             glm::dvec3& radiance) const {
+    const auto lit = [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
+      radiance += weight * shade(light_, &geometry_, point, tally.rays);
+      if (caustics_) add_caustics(point, weight, pixel, radiance);
+    };
+    const auto unlit = [&](const glm::dvec3& direction, const glm::dvec3& weight) {
+      radiance += weight * glm::dvec3(scene_.environment.radiance(glm::vec3(direction)));
+    };
+    const auto seen_relief = [&](const Hit& hit, const SurfacePoint& point, const glm::dvec3& direction,
+                                 const glm::dvec3& weight) {
+      const auto seen = reliefs_.seen(hit, point, direction, tally.rays);
+      if (seen) radiance += weight * seen->radiance;
+      return seen.has_value();
+    };
+    const glm::dvec2 place = places_.at(x, y, sample);
+    const TreeRay ray = eye_.through(x + place.x, y + place.y);
+    if (!translucent_) return tree_.trace(ray, limits_, scratch, tally, lit, unlit, seen_relief);
+    Random random(hash_bits(x, y, sample, options_.seed ^ kPathSeed));
+    return walks_.trace(ray, limits_, random, tally, lit, unlit);
+  }
+
+  // L = albedo / π · E of the photons about the point.
+  void add_caustics(const SurfacePoint& point, const glm::dvec3& weight, PixelSum& pixel, glm::dvec3& radiance) const {
+    const PhotonMap::Irradiance irradiance = caustics_->at(point.position, point.face);
+    const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
+    radiance += radiance_per_irradiance * irradiance.mean;
+    // Samples of a pixel share the photons, so their errors add up as they are.
+    const double share = 1.0 / options_.samples;
+    pixel.caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
+  }
+
+  // With several samples a pixel's distance is that of its centre.
+  void find_distances() {
+    for_pixels(camera_, {}, [&](int x, int y) {
+      const TreeRay centre = eye_.through(x + 0.5, y + 0.5);
+      layer_.distance_m[pixel_index(camera_, x, y)] =
+          geometry_.intersect(centre.origin, centre.direction, centre.begin, centre.end).distance;
+    });
+  }
+
+  void summarise() {
+    SurfaceStatistics& statistics = layer_.statistics;
+    statistics.samples = options_.samples;
+    statistics.build_s = build_s_;
+    statistics.photons_s = photons_s_;
+    statistics.trace_s = picture_.trace_s;
+    const double pixels = static_cast<double>(layer_.distance_m.size());
+    for (int y = 0; y < camera_.height; ++y) {
+      for (int x = 0; x < camera_.width; ++x) {
+        const PixelSum& pixel = picture_.pixels[pixel_index(camera_, x, y)];
+        write(layer_.radiance.at(x, y), pixel.radiance.value());
+        *layer_.optical.at(x, y) = static_cast<float>(pixel.met_optical) / static_cast<float>(options_.samples);
+        const double error = pixel.radiance.standard_error(), caustic = worst(pixel.caustic_error);
+        statistics.cut_weight_max = std::max(statistics.cut_weight_max, pixel.cut_weight / options_.samples);
+        statistics.standard_error_max = std::max(statistics.standard_error_max, error);
+        statistics.standard_error_mean += error / pixels;
+        statistics.caustic_standard_error_max = std::max(statistics.caustic_standard_error_max, caustic);
+        statistics.caustic_standard_error_mean += caustic / pixels;
+      }
+    }
+    const TreeTally& all = picture_.tally;
+    const double rays_from_eye = pixels * options_.samples;
+    statistics.cut_weight_mean = all.cut_weight / rays_from_eye;
+    statistics.limited_weight_mean = all.limited_weight / rays_from_eye;
+    statistics.lost_weight_mean = all.lost_weight / rays_from_eye;
+    statistics.rays = all.rays + (options_.samples > 1 ? layer_.distance_m.size() : 0);
+  }
+
+  const Scene& scene_;
+  const Camera& camera_;
+  const SurfaceOptions& options_;
+  const std::chrono::steady_clock::time_point start_;
+  const Geometry geometry_;
+  const Illumination light_;
+  const RayTree tree_;
+  const TranslucentPath walks_;
+  const ReliefSurfaces reliefs_;
+  const EyeRays eye_;
+  const TreeLimits limits_;
+  const PixelSamples places_;
+  const bool translucent_;
+  const double build_s_;
+  double photons_s_ = 0;
+  const std::optional<PhotonMap> caustics_;
+  PartialPicture picture_;  // it keeps the time from here on
+  SurfaceLayer layer_;
+};
+
 }  // namespace
 
 bool has_interfaces(const Scene& scene) {
@@ -142,140 +347,7 @@ SurfaceLayer trace_surfaces(const Scene& scene, const Camera& camera, const Surf
   assert(camera.width > 0 && camera.height > 0 && options.samples > 0);
   assert(options.reflections >= 0 && options.depth >= 0 && options.cut >= 0.0);
   check_traceable(scene, options);
-  const auto build_start = std::chrono::steady_clock::now();
-  const Geometry geometry(scene);
-  const Illumination light(scene);
-  const RayTree tree(scene, geometry);
-  const TranslucentPath walks(scene, geometry);
-  const bool translucent = has_scattering(scene);
-  const ReliefSurfaces reliefs(scene, geometry, light, {options.refract_light});
-  SurfaceLayer layer;
-  SurfaceStatistics& statistics = layer.statistics;
-  statistics.samples = options.samples;
-  statistics.build_s = seconds_since(build_start);
-  std::optional<PhotonMap> caustics;
-  if (options.caustics) {
-    const auto photons_start = std::chrono::steady_clock::now();
-    caustics = trace_caustics(scene, options);
-    statistics.photons_s = seconds_since(photons_start);
-  }
-
-  layer.radiance = Image(camera.width, camera.height, 3);
-  layer.optical = Image(camera.width, camera.height, 1);
-  layer.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-  TreeLimits limits;
-  limits.reflections = options.reflections;
-  limits.depth = options.depth;
-  limits.cut = options.cut;
-  limits.entry_reflection = options.entry_reflection;
-  limits.both_sides = options.both_sides;
-  const PixelSamples places(options.samples, options.seed);
-  TreeRay eye;
-  eye.origin = glm::dvec3(camera.view.eye);
-  eye.inside = tree.solids_at(eye.origin);
-  const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.view.target) - eye.origin);
-  const bool solid = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const Material& m) { return m.kind == SurfaceKind::dielectric; });
-  const auto through = [&](double x, double y) {
-    TreeRay ray = eye;
-    ray.direction = camera.ray_direction(x, y);
-    // The clipping planes are at constant view depth.
-    const double per_depth = 1.0 / glm::dot(ray.direction, forward);
-    ray.begin = static_cast<double>(camera.view.near_m) * per_depth;
-    ray.end = static_cast<double>(camera.view.far_m) * per_depth;
-    // The part that the near plane cuts off is not there, and the ray may begin inside of what it cuts open.
-    if (solid && geometry.occluded(ray.origin, ray.direction, 0.0, ray.begin)) {
-      ray.inside = tree.solids_at(ray.origin + ray.begin * ray.direction);
-      ray.unabsorbed_m = ray.begin;
-    }
-    return ray;
-  };
-
-  PartialPicture picture(scene, camera, options, translucent);
-  const auto sample_pixel = [&](int x, int y, std::int64_t begin, std::int64_t end, Sums& sum) {
-    PixelSum& pixel = picture.pixels[pixel_index(camera, x, y)];
-    TreeTally tally;
-    for (auto s = static_cast<int>(begin); s < static_cast<int>(end); ++s) {
-      const glm::dvec2 place = places.at(x, y, s);
-      glm::dvec3 sample(0.0);
-      const auto lit = [&](const Hit&, const SurfacePoint& point, const glm::dvec3&, const glm::dvec3& weight) {
-        sample += weight * shade(light, &geometry, point, tally.rays);
-        if (!caustics) return;
-        const PhotonMap::Irradiance irradiance = caustics->at(point.position, point.face);
-        const glm::dvec3 radiance_per_irradiance = weight * point.albedo / std::numbers::pi;
-        sample += radiance_per_irradiance * irradiance.mean;
-        // Samples of a pixel share the photons, so their errors add up as they are.
-        const double share = 1.0 / options.samples;
-        pixel.caustic_error += share * radiance_per_irradiance * glm::sqrt(irradiance.variance);
-      };
-      const auto unlit = [&](const glm::dvec3& direction, const glm::dvec3& weight) {
-        sample += weight * glm::dvec3(scene.environment.radiance(glm::vec3(direction)));
-      };
-      const auto seen_relief = [&](const Hit& hit, const SurfacePoint& point, const glm::dvec3& direction,
-                                   const glm::dvec3& weight) {
-        const auto seen = reliefs.seen(hit, point, direction, tally.rays);
-        if (seen) sample += weight * seen->radiance;
-        return seen.has_value();
-      };
-      const TreeRay ray = through(x + place.x, y + place.y);
-      Hit first;
-      if (translucent) {
-        Random random(hash_bits(x, y, s, options.seed ^ kPathSeed));
-        first = walks.trace(ray, limits, random, tally, lit, unlit);
-      } else {
-        first = tree.trace(ray, limits, sum.scratch, tally, lit, unlit, seen_relief);
-      }
-      pixel.radiance.add(sample);
-      layer.distance_m[pixel_index(camera, x, y)] = first.distance;
-      if (first.instance != nullptr && optical(scene, *first.instance)) ++pixel.met_optical;
-    }
-    pixel.cut_weight += tally.cut_weight;
-    sum.tally.add(tally);
-  };
-  while (picture.samples < options.samples) {
-    const std::int64_t begin = picture.samples;
-    const std::int64_t end =
-        translucent ? std::min<std::int64_t>(options.samples, begin + kSamplesAtOnce) : std::int64_t{options.samples};
-    const auto progress = [&](double share) {
-      options.progress((static_cast<double>(begin) + share * static_cast<double>(end - begin)) / options.samples);
-    };
-    tbb::combinable<Sums> sums;
-    for_pixels(camera, options.progress ? std::function<void(double)>(progress) : std::function<void(double)>(),
-               [&](int x, int y) { sample_pixel(x, y, begin, end, sums.local()); });
-    sums.combine_each([&](const Sums& sum) { picture.tally.add(sum.tally); });
-    picture.samples = end;
-    picture.advance(end == options.samples);
-  }
-  if (options.samples > 1) {
-    for_pixels(camera, {}, [&](int x, int y) {
-      const TreeRay centre = through(x + 0.5, y + 0.5);
-      layer.distance_m[pixel_index(camera, x, y)] =
-          geometry.intersect(centre.origin, centre.direction, centre.begin, centre.end).distance;
-    });
-  }
-  statistics.trace_s = picture.trace_s;
-
-  const double pixels = static_cast<double>(layer.distance_m.size());
-  for (int y = 0; y < camera.height; ++y) {
-    for (int x = 0; x < camera.width; ++x) {
-      const PixelSum& pixel = picture.pixels[pixel_index(camera, x, y)];
-      write(layer.radiance.at(x, y), pixel.radiance.value());
-      *layer.optical.at(x, y) = static_cast<float>(pixel.met_optical) / static_cast<float>(options.samples);
-      const double error = pixel.radiance.standard_error(), caustic = worst(pixel.caustic_error);
-      statistics.cut_weight_max = std::max(statistics.cut_weight_max, pixel.cut_weight / options.samples);
-      statistics.standard_error_max = std::max(statistics.standard_error_max, error);
-      statistics.standard_error_mean += error / pixels;
-      statistics.caustic_standard_error_max = std::max(statistics.caustic_standard_error_max, caustic);
-      statistics.caustic_standard_error_mean += caustic / pixels;
-    }
-  }
-  const TreeTally& all = picture.tally;
-  const double rays_from_eye = pixels * options.samples;
-  statistics.cut_weight_mean = all.cut_weight / rays_from_eye;
-  statistics.limited_weight_mean = all.limited_weight / rays_from_eye;
-  statistics.lost_weight_mean = all.lost_weight / rays_from_eye;
-  statistics.rays = all.rays + (options.samples > 1 ? layer.distance_m.size() : 0);
-  return layer;
+  return SurfaceTracing(scene, camera, options).run();
 }
 
 SurfaceLayer shade_surfaces(const Scene& scene, const Camera& camera, const SurfacePoints& points) {
