@@ -115,135 +115,190 @@ ordered_json statistics_json(const SurfaceStatistics& s) {
           {"trace_s", s.trace_s}};
 }
 
+/// One run of the command, from the scene to the picture and what is said of it.
+class ReferenceRun {
+ public:
+  explicit ReferenceRun(const Options& options)
+      : options_(options),
+        size_(parse_size(options.size)),
+        settings_(reference_settings(options)),
+        scene_(load_scene(options.scene)),
+        origin_(file_provenance()) {
+    check_output_is_no_input(options.output, scene_);
+    print_warnings(scene_);
+    settings_ = sweeps::settled(settings_, scene_.name, has_interfaces(scene_), scene_.volume.has_value());
+    of_slices_ = settings_.method == sweeps::ReferenceMethod::slices;
+    from_rays_ = settings_.surfaces == sweeps::ReferenceSurfaces::rays;
+    const bool draws = of_slices_ || settings_.surfaces == sweeps::ReferenceSurfaces::forward;
+    parameters_ = reference_parameters(options, scene_, draws);
+    camera_ = {view_of(scene_, options.view), size_.width, size_.height};
+    tracing_.tolerance = options.tolerance;
+    tracing_.max_steps = options.max_steps;
+    if (terminal_) {
+      tracing_.progress = [](double share) { fmt::print(stderr, "\rreference {:3.0f} %", 100 * share); };
+    }
+    origin_["scene_hash"] = scene_.content_hash();
+    draws_ = draws || settings_.surfaces == sweeps::ReferenceSurfaces::raster;
+  }
+
+  void trace() {
+    const SurfaceLayer surfaces = draws_ ? drawn_surfaces() : traced_surfaces();
+    exact_ = render_reference(scene(), camera_, surfaces, tracing_);
+    errors_ = {{"step_error_max", exact_.step_error_max},
+               {"step_error_mean", exact_.step_error_mean},
+               {"unconverged_share", exact_.unconverged_share}};
+    if (from_rays_) errors_.update(statistics_json(exact_.surfaces));
+    file_.image = exact_.image;
+    file_.layers["mask"] = exact_.mask;
+    if (of_slices_) {
+      errors_.update(distance(exact_.image, slices_));
+      file_.image = std::move(slices_);
+    }
+    if (settings_.shadow_share > 0) {
+      const Reference unshadowed =
+          sweeps::trace_unshadowed(sweeps::load_again(options_.scene, parameters_), camera_, surfaces, tracing_);
+      file_.layers["shadow"] = sweeps::shadow_mask(exact_.image, unshadowed.image, settings_.shadow_share);
+    }
+    if (terminal_) fmt::print(stderr, "\r");
+    require_finite(file_.image, "reference");
+  }
+
+  void write() {
+    file_.attributes = file_attributes("reference", recipe(), origin_);
+    file_.attributes["pellucid.reference_error"] = errors_.dump();
+    write_picture(options_.output, file_, options_.display);
+    if (from_rays_ && exact_.surfaces.lost_weight_mean > 0) {
+      fmt::print(
+          stderr,
+          "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its mesh is "
+          "open or inside out\n",
+          exact_.surfaces.lost_weight_mean);
+    }
+  }
+
+  const Image& picture() const { return file_.image; }
+
+  void print_json() {
+    ordered_json out = recipe();
+    out.update(errors_);
+    out["volume"] = volume_json(scene());
+    out["warnings"] = loading_facts(scene()).warnings;
+    out["output"] = options_.output.string();
+    fmt::print("{}\n", out.dump(2));
+  }
+
+  void print_summary() const {
+    const std::string output = options_.output.string();
+    fmt::print(
+        stderr, "{}: {} of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance\n",
+        output,
+        of_slices_ ? fmt::format("{} slices in a frame of {} format", options_.slices, options_.format) : "reference",
+        options_.scene, size_.width, size_.height, exact_.step_error_max, exact_.step_error_mean,
+        100 * exact_.unconverged_share);
+    if (from_rays_) {
+      const SurfaceStatistics& s = exact_.surfaces;
+      fmt::print(
+          stderr,
+          "{}: {:.3g} s for {} rays ({:.3g} a second); standard error max {:.2g}, mean {:.2g}; weight left out max "
+          "{:.2g}, mean {:.2g}\n",
+          output, s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
+          s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
+    }
+    if (of_slices_) {
+      fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", output,
+                 errors_.at("to_exact_flip_mean").get<double>(), errors_.at("to_exact_rmse").get<double>());
+    }
+  }
+
+ private:
+  /// The session takes the scene, with its parameters as they are; from then on it is used there.
+  SurfaceLayer drawn_surfaces() {
+    context_.emplace(gl::ContextOptions{.device = options_.device});
+    session_.emplace(std::move(scene_), techniques().front().name, camera_.view.name, size_.width, size_.height);
+    for (const auto& [name, value] : parameters_) {
+      if (route(name).owner == ParameterOwner::shadow) session_->assign(name, value);
+    }
+    SurfaceLayer surfaces = sweeps::reference_surfaces(*session_, settings_);
+    if (of_slices_) {
+      slices_ =
+          sweeps::draw_slices(options_.scene, parameters_, camera_.view.name, size_.width, size_.height, settings_);
+    }
+    origin_["device"] = context_->device().renderer;
+    origin_["driver"] = context_->device().version;
+    return surfaces;
+  }
+
+  SurfaceLayer traced_surfaces() const {
+    SurfaceOptions rays = options_.tracing;
+    rays.progress = tracing_.progress;
+    return trace_surfaces(scene_, camera_, rays);
+  }
+
+  Scene& scene() { return session_ ? session_->scene() : scene_; }
+
+  ordered_json recipe() const {
+    nlohmann::json shown = nlohmann::json::object();
+    for (const auto& [name, value] : parameters_)
+      shown[name] = sweeps::value_to_json(value);
+    ordered_json recipe{{"scene", options_.scene},
+                        {"view", camera_.view.name},
+                        {"width", size_.width},
+                        {"height", size_.height},
+                        {"surfaces", options_.surfaces},
+                        {"tolerance", options_.tolerance},
+                        {"max_steps", options_.max_steps},
+                        {"parameters", shown}};
+    if (from_rays_) {
+      const SurfaceOptions& rays = options_.tracing;
+      recipe["samples"] = rays.samples;
+      recipe["reflections"] = rays.reflections;
+      recipe["cut"] = rays.cut;
+      recipe["caustics"] = rays.caustics;
+      if (rays.refract_light) recipe["refract_light"] = true;
+      if (rays.caustics) {
+        recipe["photons"] = rays.photons;
+        recipe["caustic_radius_m"] = rays.caustic_radius_m;
+      }
+    }
+    if (of_slices_) {
+      recipe["method"] = options_.method;
+      recipe["slices"] = options_.slices;
+      recipe["format"] = options_.format;
+    }
+    if (settings_.shadow_share > 0) recipe["shadow_share"] = settings_.shadow_share;
+    return recipe;
+  }
+
+  const Options& options_;
+  const Size size_;
+  sweeps::ReferenceSettings settings_;
+  Scene scene_;
+  ordered_json origin_;  ///< where the file comes from
+  const bool terminal_ = isatty(STDERR_FILENO) != 0;
+  bool of_slices_ = false, from_rays_ = false, draws_ = false;
+  std::map<std::string, Value> parameters_;
+  Camera camera_;
+  ReferenceOptions tracing_;
+  std::optional<gl::Context> context_;
+  std::optional<RenderSession> session_;
+  Image slices_;
+  Reference exact_;
+  ordered_json errors_;
+  ImageFile file_;
+};
+
 int reference(const Options& options) {
-  const Size size = parse_size(options.size);
   check_output(options.output, {".exr", ".png"});
   std::optional<TevClient> tev;
   if (!options.tev.empty()) tev.emplace(options.tev);  // before the work
-  sweeps::ReferenceSettings settings = reference_settings(options);
-  const bool of_slices = settings.method == sweeps::ReferenceMethod::slices;
-  const bool draws = of_slices || settings.surfaces == sweeps::ReferenceSurfaces::forward;
-  Scene loaded = load_scene(options.scene);
-  check_output_is_no_input(options.output, loaded);
-  print_warnings(loaded);
-  settings = sweeps::settled(settings, loaded.name, has_interfaces(loaded), loaded.volume.has_value());
-  const std::map<std::string, Value> parameters = reference_parameters(options, loaded, draws);
-  const Camera camera{view_of(loaded, options.view), size.width, size.height};
-  ReferenceOptions tracing;
-  tracing.tolerance = options.tolerance;
-  tracing.max_steps = options.max_steps;
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (terminal) {
-    tracing.progress = [](double share) { fmt::print(stderr, "\rreference {:3.0f} %", 100 * share); };
-  }
-
-  ordered_json origin = file_provenance();
-  origin["scene_hash"] = loaded.content_hash();
-  SurfaceLayer surfaces;
-  Image slices;
-  // The drawing part takes the scene, with its parameters as they are; the rest uses it there.
-  std::optional<gl::Context> context;
-  std::optional<RenderSession> session;
-  if (draws || settings.surfaces == sweeps::ReferenceSurfaces::raster) {
-    context.emplace(gl::ContextOptions{.device = options.device});
-    session.emplace(std::move(loaded), techniques().front().name, camera.view.name, size.width, size.height);
-    for (const auto& [name, value] : parameters) {
-      if (route(name).owner == ParameterOwner::shadow) session->assign(name, value);
-    }
-    surfaces = sweeps::reference_surfaces(*session, settings);
-    if (of_slices)
-      slices = sweeps::draw_slices(options.scene, parameters, camera.view.name, size.width, size.height, settings);
-    origin["device"] = context->device().renderer;
-    origin["driver"] = context->device().version;
-  } else {
-    SurfaceOptions rays = options.tracing;
-    rays.progress = tracing.progress;
-    surfaces = trace_surfaces(loaded, camera, rays);
-  }
-  Scene& scene = session ? session->scene() : loaded;
-  const Reference exact = render_reference(scene, camera, surfaces, tracing);
-
-  ordered_json errors{{"step_error_max", exact.step_error_max},
-                      {"step_error_mean", exact.step_error_mean},
-                      {"unconverged_share", exact.unconverged_share}};
-  nlohmann::json shown = nlohmann::json::object();
-  for (const auto& [name, value] : parameters)
-    shown[name] = sweeps::value_to_json(value);
-  ordered_json recipe{
-      {"scene", options.scene},         {"view", camera.view.name},     {"width", size.width},
-      {"height", size.height},          {"surfaces", options.surfaces}, {"tolerance", options.tolerance},
-      {"max_steps", options.max_steps}, {"parameters", shown}};
-  const bool from_rays = settings.surfaces == sweeps::ReferenceSurfaces::rays;
-  if (from_rays) {
-    const SurfaceOptions& rays = options.tracing;
-    recipe["samples"] = rays.samples;
-    recipe["reflections"] = rays.reflections;
-    recipe["cut"] = rays.cut;
-    recipe["caustics"] = rays.caustics;
-    if (rays.refract_light) recipe["refract_light"] = true;
-    if (rays.caustics) {
-      recipe["photons"] = rays.photons;
-      recipe["caustic_radius_m"] = rays.caustic_radius_m;
-    }
-    errors.update(statistics_json(exact.surfaces));
-  }
-  ImageFile file;
-  file.image = exact.image;
-  file.layers["mask"] = exact.mask;
-  if (of_slices) {
-    recipe["method"] = options.method;
-    recipe["slices"] = options.slices;
-    recipe["format"] = options.format;
-    errors.update(distance(exact.image, slices));
-    file.image = std::move(slices);
-  }
-  if (settings.shadow_share > 0) {
-    recipe["shadow_share"] = settings.shadow_share;
-    const Reference unshadowed =
-        sweeps::trace_unshadowed(sweeps::load_again(options.scene, parameters), camera, surfaces, tracing);
-    file.layers["shadow"] = sweeps::shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
-  }
-  if (terminal) fmt::print(stderr, "\r");
-  require_finite(file.image, "reference");
-  file.attributes = file_attributes("reference", recipe, origin);
-  file.attributes["pellucid.reference_error"] = errors.dump();
-  write_picture(options.output, file, options.display);
-  if (from_rays && exact.surfaces.lost_weight_mean > 0) {
-    fmt::print(
-        stderr,
-        "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its mesh is "
-        "open or inside out\n",
-        exact.surfaces.lost_weight_mean);
-  }
-  if (tev) tev->send("reference of " + options.scene, file.image);
-  if (options.json) {
-    ordered_json out = recipe;
-    out.update(errors);
-    out["volume"] = volume_json(scene);
-    out["warnings"] = loading_facts(scene).warnings;
-    out["output"] = options.output.string();
-    fmt::print("{}\n", out.dump(2));
-    return kDone;
-  }
-  fmt::print(stderr,
-             "{}: {} of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance\n",
-             options.output.string(),
-             of_slices ? fmt::format("{} slices in a frame of {} format", options.slices, options.format) : "reference",
-             options.scene, size.width, size.height, exact.step_error_max, exact.step_error_mean,
-             100 * exact.unconverged_share);
-  if (from_rays) {
-    const SurfaceStatistics& s = exact.surfaces;
-    fmt::print(
-        stderr,
-        "{}: {:.3g} s for {} rays ({:.3g} a second); standard error max {:.2g}, mean {:.2g}; weight left out max "
-        "{:.2g}, mean {:.2g}\n",
-        options.output.string(), s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
-        s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
-  }
-  if (of_slices) {
-    fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", options.output.string(),
-               errors.at("to_exact_flip_mean").get<double>(), errors.at("to_exact_rmse").get<double>());
-  }
+  ReferenceRun run(options);
+  run.trace();
+  run.write();
+  if (tev) tev->send("reference of " + options.scene, run.picture());
+  if (options.json)
+    run.print_json();
+  else
+    run.print_summary();
   return kDone;
 }
 

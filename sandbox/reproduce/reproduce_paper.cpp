@@ -21,6 +21,7 @@
 #include "sandbox/status.hpp"
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/spec/provenance.hpp"
+#include "sweeps/store/rows.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/progress.hpp"
 
@@ -87,7 +88,7 @@ void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder
 std::string device_of(const PaperOutcome& outcome) {
   for (const SweepOutcome& sweep : outcome.sweeps) {
     for (const json& row : sweep.rows) {
-      if (std::string device = row.value("device", ""); !device.empty()) return device;
+      if (std::string device = sweeps::text(row, "device"); !device.empty()) return device;
     }
   }
   return "";

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "sweeps/spec/provenance.hpp"
+#include "sweeps/store/rows.hpp"
 #include "sweeps/workers/progress.hpp"
 
 namespace pellucid::sandbox {
@@ -25,7 +26,7 @@ std::string distinct(const PaperOutcome& outcome, const char* field) {
   std::vector<std::string> found;
   for (const SweepOutcome& sweep : outcome.sweeps) {
     for (const json& row : sweep.rows) {
-      const std::string value = row.value(field, "");
+      const std::string value = sweeps::text(row, field);
       if (!value.empty() && std::find(found.begin(), found.end(), value) == found.end()) found.push_back(value);
     }
   }
@@ -36,7 +37,7 @@ std::string distinct(const PaperOutcome& outcome, const char* field) {
 std::size_t count_points(const SweepOutcome& sweep, const char* field, const char* value) {
   std::set<std::string> points;
   for (const json& row : sweep.rows) {
-    if (row.value(field, "") == value) points.insert(row.value("point", ""));
+    if (sweeps::text(row, field) == value) points.insert(sweeps::text(row, "point"));
   }
   return points.size();
 }
@@ -44,7 +45,8 @@ std::size_t count_points(const SweepOutcome& sweep, const char* field, const cha
 std::string distinct_sizes(const SweepOutcome& sweep) {
   std::set<std::pair<int, int>> sizes;
   for (const json& row : sweep.rows)
-    sizes.emplace(row.value("width", 0), row.value("height", 0));
+    sizes.emplace(static_cast<int>(sweeps::number(row, "width").value_or(0)),
+                  static_cast<int>(sweeps::number(row, "height").value_or(0)));
   std::string out;
   for (const auto& [width, height] : sizes)
     out += fmt::format("{}{}×{}", out.empty() ? "" : ", ", width, height);
@@ -77,8 +79,8 @@ Facts run_facts(const PaperOutcome& outcome) {
   std::vector<std::string> commits;
   for (const SweepOutcome& sweep : outcome.sweeps) {
     for (const json& row : sweep.rows) {
-      const std::string commit =
-          row.value("commit", "") + (row.value("dirty", false) ? " with uncommitted changes" : "");
+      const std::string commit = sweeps::text(row, "commit") +
+                                 (sweeps::number_or_flag(row, "dirty") == 1.0 ? " with uncommitted changes" : "");
       if (std::find(commits.begin(), commits.end(), commit) == commits.end()) commits.push_back(commit);
     }
   }
@@ -105,7 +107,7 @@ ReportTable sweep_table(const PaperOutcome& outcome) {
     double wall_s = 0;
     std::set<std::string> points;
     for (const json& row : sweep.rows) {
-      if (points.insert(row.value("point", "")).second) wall_s += row.value("wall_s", 0.0);
+      if (points.insert(sweeps::text(row, "point")).second) wall_s += sweeps::number(row, "wall_s").value_or(0);
     }
     const auto drift = sweep.summary.baseline_drift;
     table.rows.push_back({sweep.name, fmt::format("{}", points.size()), distinct_sizes(sweep),
@@ -283,18 +285,20 @@ ReportTable trouble_table(const PaperOutcome& outcome) {
   std::set<std::string> seen;
   for (const SweepOutcome& sweep : outcome.sweeps) {
     for (const json& row : sweep.rows) {
-      const bool failed = row.value("status", "") == "failed";
-      const bool unconverged = row.value("timing", "") == "unconverged";
-      if ((!failed && !unconverged) || !seen.insert(sweep.name + row.value("point", "")).second) continue;
-      std::string why = row.value("failure", "");
+      const bool failed = sweeps::text(row, "status") == "failed";
+      const bool unconverged = sweeps::text(row, "timing") == "unconverged";
+      if ((!failed && !unconverged) || !seen.insert(sweep.name + sweeps::text(row, "point")).second) continue;
+      std::string why = sweeps::text(row, "failure");
       if (!failed) {
-        const double median = row.value("frame_ms_median", 0.0);
-        const double half = 0.5 * (row.value("frame_ms_ci95_high", median) - row.value("frame_ms_ci95_low", median));
+        const double median = sweeps::number(row, "frame_ms_median").value_or(0);
+        const double half = 0.5 * (sweeps::number(row, "frame_ms_ci95_high").value_or(median) -
+                                   sweeps::number(row, "frame_ms_ci95_low").value_or(median));
         why = fmt::format("not converged: {:.4g} ms ± {:.1f} % after {} frames", median,
-                          median > 0 ? 100 * half / median : 0.0, row.value("frames", 0));
+                          median > 0 ? 100 * half / median : 0.0,
+                          static_cast<int>(sweeps::number(row, "frames").value_or(0)));
       }
       table.rows.push_back(
-          {sweep.name, row.value("block", ""), row.value("technique", ""), why, row.value("repeat", "")});
+          {sweep.name, sweeps::text(row, "block"), sweeps::text(row, "technique"), why, sweeps::text(row, "repeat")});
     }
   }
   return table;
