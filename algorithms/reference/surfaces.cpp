@@ -199,9 +199,11 @@ class SurfaceTracing {
         limits_(tree_limits(options)),
         places_(options.samples, options.seed),
         translucent_(has_scattering(scene)),
+        walking_(translucent_ || std::any_of(scene.reliefs.begin(), scene.reliefs.end(),
+                                             [](const Relief& relief) { return relief.scatters(); })),
         build_s_(seconds_since(start_)),
         caustics_(trace_caustics(scene, options, photons_s_)),
-        picture_(scene, camera, options, translucent_) {
+        picture_(scene, camera, options, walking_) {
     layer_.radiance = Image(camera.width, camera.height, 3);
     layer_.optical = Image(camera.width, camera.height, 1);
     layer_.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
@@ -219,8 +221,8 @@ class SurfaceTracing {
   // The next samples of every pixel: all of them, or so many that a picture which is kept while it grows is looked at.
   void add_samples() {
     const std::int64_t begin = picture_.samples;
-    const std::int64_t end = translucent_ ? std::min<std::int64_t>(options_.samples, begin + kSamplesAtOnce)
-                                          : std::int64_t{options_.samples};
+    const std::int64_t end =
+        walking_ ? std::min<std::int64_t>(options_.samples, begin + kSamplesAtOnce) : std::int64_t{options_.samples};
     const auto progress = [&](double share) {
       options_.progress((static_cast<double>(begin) + share * static_cast<double>(end - begin)) / options_.samples);
     };
@@ -256,16 +258,16 @@ class SurfaceTracing {
     const auto unlit = [&](const glm::dvec3& direction, const glm::dvec3& weight) {
       radiance += weight * glm::dvec3(scene_.environment.radiance(glm::vec3(direction)));
     };
+    Random random(hash_bits(x, y, sample, options_.seed ^ kPathSeed));
     const auto seen_relief = [&](const Hit& hit, const SurfacePoint& point, const glm::dvec3& direction,
                                  const glm::dvec3& weight) {
-      const auto seen = reliefs_.seen(hit, point, direction, tally.rays);
+      const auto seen = reliefs_.seen(hit, point, direction, random, tally.rays);
       if (seen) radiance += weight * seen->radiance;
       return seen.has_value();
     };
     const glm::dvec2 place = places_.at(x, y, sample);
     const TreeRay ray = eye_.through(x + place.x, y + place.y);
     if (!translucent_) return tree_.trace(ray, limits_, scratch, tally, lit, unlit, seen_relief);
-    Random random(hash_bits(x, y, sample, options_.seed ^ kPathSeed));
     return walks_.trace(ray, limits_, random, tally, lit, unlit);
   }
 
@@ -329,6 +331,7 @@ class SurfaceTracing {
   const TreeLimits limits_;
   const PixelSamples places_;
   const bool translucent_;
+  const bool walking_;  // solids or reliefs scatter
   const double build_s_;
   double photons_s_ = 0;
   const std::optional<PhotonMap> caustics_;

@@ -1,10 +1,9 @@
 #include "algorithms/reference/translucent_path.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "algorithms/reference/interface_bend.hpp"
+#include "algorithms/reference/media/phase.hpp"
 #include "algorithms/shaders/optics.hpp"
 
 namespace pellucid {
@@ -12,22 +11,6 @@ namespace {
 
 double uniform(Random& random) {
   return static_cast<double>(random.next());
-}
-
-// A direction at the phase function's angle from `direction`.
-glm::dvec3 deflected(const glm::dvec3& direction, double g, Random& random) {
-  const double u = uniform(random);
-  double cosine = 1 - 2 * u;
-  if (std::abs(g) > 1e-4) {
-    const double s = (1 - g * g) / (1 + g - 2 * g * u);
-    cosine = std::clamp((1 + g * g - s * s) / (2 * g), -1.0, 1.0);
-  }
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double turn = 2 * std::numbers::pi * uniform(random);
-  const glm::dvec3 side =
-      glm::normalize(glm::cross(direction, std::abs(direction.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-  return glm::normalize(cosine * direction +
-                        sine * (std::cos(turn) * side + std::sin(turn) * glm::cross(direction, side)));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace pellucid::translucent_relief {
 namespace {
 
 // The maps, in their order.
-enum : std::size_t { kHit, kMissed, kOcclusion, kTaken };
+enum : std::size_t { kHit, kMissed, kOcclusion, kTaken, kCovered };
 
 glm::dvec3 xyz(const float* p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
@@ -35,6 +35,7 @@ SearchErrors::SearchErrors(int width, int height) {
   add("missed", "", "1 where the view ray stepped through what it meets first");
   add("occlusion_error", "of the light", "difference between the first light's share at the hit and the true one");
   add("heights_taken", "heights", "heights that the view ray asked for");
+  add("covered", "", "1 where the view ray meets the medium before the solid");
 }
 
 void SearchErrors::add(const SearchReport& report, const ReliefTracer& tracer) {
@@ -55,11 +56,13 @@ void SearchErrors::add(const SearchReport& report, const ReliefTracer& tracer) {
     const auto put = [&](std::size_t map, double value) { gl_pixel(maps_[map], pixel) = static_cast<float>(value); };
     if (!truth && !met) return;
     put(kTaken, static_cast<double>(scale[2]));
+    if (truth) put(kCovered, truth->medium ? 1 : 0);
     // A ray that leaves through the side just where it would meet something is decided by a rounding.
     const bool missed = truth && (!met || found > truth->distance_m + step_m);
     put(kMissed, missed ? 1 : 0);
     if (missed || !truth) return;
     put(kHit, std::abs(found - truth->distance_m));
+    if (tracer.scatters()) return;  // the tracer tells the share of unscattered light alone
     const glm::dvec3 to_light = xyz(&report.light[i]);
     if (glm::length(to_light) < 0.5 || to_light.z <= 0.0) return;
     const glm::dvec3 share = tracer.light_reaching(place, truth->distance_m * v, glm::normalize(to_light), 1.0);

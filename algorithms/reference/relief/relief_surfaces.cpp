@@ -26,12 +26,6 @@ ReliefSurfaces::ReliefSurfaces(const Scene& scene, const Geometry& geometry, con
                                const ReliefOptics& optics)
     : scene_(&scene), geometry_(&geometry), light_(&light) {
   if (scene.reliefs.empty()) return;
-  for (const Relief& relief : scene.reliefs) {
-    if (relief.scatters()) {
-      throw InputError(fmt::format("the reference does not trace the scattering of relief '{}' of scene '{}'",
-                                   relief.name, scene.name));
-    }
-  }
   if (std::any_of(scene.instances.begin(), scene.instances.end(),
                   [&](const Instance& i) { return !optical(scene, i); }))
     objects_.emplace(scene, [&](int i) { return !optical(scene, scene.instances[static_cast<std::size_t>(i)]); });
@@ -76,7 +70,8 @@ std::optional<ReliefTracer::Object> ReliefSurfaces::object_on(const glm::dvec3& 
 }
 
 std::optional<ReliefSurfaces::Seen> ReliefSurfaces::seen(const Hit& hit, const SurfacePoint& point,
-                                                         const glm::dvec3& direction, std::uint64_t& rays) const {
+                                                         const glm::dvec3& direction, Random& random,
+                                                         std::uint64_t& rays) const {
   if (!point.front) return std::nullopt;
   const ReliefTracer& tracer = tracers_[static_cast<std::size_t>(hit.instance->relief)];
   const ReliefPlace straight = place_of(hit, point);
@@ -108,7 +103,7 @@ std::optional<ReliefSurfaces::Seen> ReliefSurfaces::seen(const Hit& hit, const S
   // An object that dips in may be met first.
   if (const auto object = objects(place.position, place.to_world(v), met->distance_m))
     return Seen{object->radiance, object->distance_m};
-  return Seen{tracer.radiance(place, v, *met, visible, objects), met->distance_m};
+  return Seen{tracer.radiance(place, v, *met, visible, objects, &random), met->distance_m};
 }
 
 }  // namespace pellucid

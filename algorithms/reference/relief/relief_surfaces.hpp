@@ -20,12 +20,13 @@ class ReliefSurfaces {
   ReliefSurfaces(const Scene&, const Geometry&, const Illumination&, const ReliefOptics&);
 
   /// Radiance from the relief whose mesh the ray hits at `point`, and how far under the mesh it is met [m]; nothing
-  /// where the ray leaves the relief unhit, or comes from behind. `rays` counts those to the lights.
+  /// where the ray leaves the relief unhit, or comes from behind. `rays` counts those to the lights; `random` is used
+  /// where a medium scatters.
   struct Seen {
     glm::dvec3 radiance{0.0};
     double deeper_m = 0;
   };
-  std::optional<Seen> seen(const Hit&, const SurfacePoint& point, const glm::dvec3& direction,
+  std::optional<Seen> seen(const Hit&, const SurfacePoint& point, const glm::dvec3& direction, Random& random,
                            std::uint64_t& rays) const;
 
  private:

@@ -1,6 +1,7 @@
 #include "algorithms/reference/relief/relief_tracer.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -112,7 +113,7 @@ ReliefTracer::Arriving ReliefTracer::arriving(const ReliefPlace& place, const gl
   }
   if (meet(solid_, ray, solid_from, 1.0)) return Arriving{glm::dvec3(0.0), result.direction};
   if (side < 0.0) inside += std::max(end_of(ray, from) - from, 0.0);
-  result.share *= share * transmitted(glm::dvec3(relief_->absorption), inside);
+  result.share *= share * transmitted(glm::dvec3(relief_->absorption) + glm::dvec3(relief_->scattering), inside);
   return result;
 }
 
@@ -130,12 +131,20 @@ double ReliefTracer::visible(const ReliefPlace& place, const Visible& visible, s
   return visible(light, through, place.to_world(to_light), distance_m - up) ? 1.0 : 0.0;
 }
 
+glm::dvec3 ReliefTracer::environment(const ReliefPlace& place, const glm::dvec3& direction) const {
+  return glm::dvec3(scene_->environment.radiance(glm::vec3(place.to_world(direction))));
+}
+
+glm::dvec3 ReliefTracer::solid_albedo(const ReliefPlace& place, const glm::dvec2& uv) const {
+  return glm::dvec3(relief_->solid.albedo) * place.tint * solid_.color(uv);
+}
+
 glm::dvec3 ReliefTracer::solid_radiance(const ReliefPlace& place, const glm::dvec3& p, const glm::dvec3& v,
                                         const Visible& visible) const {
   const ReliefRay here = place.ray(p, v);
   const glm::dvec2 uv = here.uv_at(0.0);
   const glm::dvec3 n = solid_.normal(uv, here.uv_per_metre);
-  const glm::dvec3 albedo = glm::dvec3(relief_->solid.albedo) * place.tint * solid_.color(uv);
+  const glm::dvec3 albedo = solid_albedo(place, uv);
   const double side = medium_ && medium_->height_m(uv) > p.z ? -1.0 : 1.0;
   glm::dvec3 sum = albedo * light_->ambient();
   for (std::size_t i = 0; i < light_->light_count(); ++i) {
@@ -152,13 +161,10 @@ glm::dvec3 ReliefTracer::solid_radiance(const ReliefPlace& place, const glm::dve
 }
 
 glm::dvec3 ReliefTracer::radiance(const ReliefPlace& place, const glm::dvec3& v, const ReliefHit& hit,
-                                  const Visible& visible, const Objects& objects) const {
+                                  const Visible& visible, const Objects& objects, Random* random) const {
   const glm::dvec3 p = hit.distance_m * v;
   if (!hit.medium) return solid_radiance(place, p, v, visible);
 
-  const auto environment = [&](const glm::dvec3& direction) {
-    return glm::dvec3(scene_->environment.radiance(glm::vec3(place.to_world(direction))));
-  };
   const ReliefRay arriving_ray = place.ray(p, v);
   const glm::dvec3 n = facing(medium_->normal(arriving_ray.uv_at(0.0), arriving_ray.uv_per_metre), v);
   const double eta = static_cast<double>(relief_->outside_index) / static_cast<double>(relief_->index);
@@ -175,9 +181,13 @@ glm::dvec3 ReliefTracer::radiance(const ReliefPlace& place, const glm::dvec3& v,
         return *object;
     }
     if (solid) return Object{*solid, solid_radiance(place, ray.at(*solid), direction, visible)};
-    return Object{end_of(ray, 0.0), environment(direction)};
+    return Object{end_of(ray, 0.0), environment(place, direction)};
   };
-  if (const auto bent = refracted(v, n, eta); bent && reflected_share < 1.0) {
+  const auto bent = refracted(v, n, eta);
+  if (bent && reflected_share < 1.0 && relief_->scatters()) {
+    assert(random != nullptr);
+    sum += (1.0 - reflected_share) * walk(place, p, *bent, visible, objects, *random);
+  } else if (bent && reflected_share < 1.0) {
     const ReliefRay ray = place.ray(p, *bent);
     const Object far = seen(*bent, end_of(ray, 0.0));
     const double inside = std::min(far.distance_m, meet(*medium_, ray, 0.0, -1.0).value_or(far.distance_m));

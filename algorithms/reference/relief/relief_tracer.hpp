@@ -10,6 +10,7 @@
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/scene/meshes/tangents.hpp"
 #include "algorithms/scene/scene.hpp"
+#include "algorithms/scene/shapes/noise.hpp"
 
 /// The look of a mesh that carries a relief, by exact hits: the optics and the shading of Timonen (references.bib:
 /// timonen), Algorithms 1 and 2.
@@ -65,15 +66,17 @@ class ReliefTracer {
 
   /// `direction` of unit length in the place's frame, downwards. Nothing where the ray leaves the surface unhit.
   std::optional<ReliefHit> first_hit(const ReliefPlace&, const glm::dvec3& direction) const;
-  /// Radiance towards the ray's origin from that hit.
+  /// Radiance towards the ray's origin from that hit. Where the medium scatters it is that of one random walk in it,
+  /// for which `random` is needed.
   glm::dvec3 radiance(const ReliefPlace&, const glm::dvec3& direction, const ReliefHit&, const Visible&,
-                      const Objects& = {}) const;
+                      const Objects& = {}, Random* random = nullptr) const;
   /// Share of light along `to_light` (frame, unit) that reaches the frame's point `p` on the `side` of the medium's
-  /// surface: Algorithm 2 with absorption.
+  /// surface: Algorithm 2 with absorption, and without the light that the medium scatters.
   glm::dvec3 light_reaching(const ReliefPlace&, const glm::dvec3& p, const glm::dvec3& to_light, double side) const;
 
   const HeightField& solid() const { return solid_; }
   const HeightField* medium() const { return medium_ ? &*medium_ : nullptr; }
+  bool scatters() const { return relief_->scatters(); }
 
  private:
   struct Arriving {
@@ -85,6 +88,13 @@ class ReliefTracer {
   double visible(const ReliefPlace&, const Visible&, std::size_t light, const glm::dvec3& p, const glm::dvec3& to_light,
                  double distance_m) const;
   double end_of(const ReliefRay&, double from) const;
+  glm::dvec3 environment(const ReliefPlace&, const glm::dvec3& direction) const;
+  glm::dvec3 solid_albedo(const ReliefPlace&, const glm::dvec2& uv) const;
+  /// Light that a walk brings from the medium, at whose surface `p` it sets out inwards. Scattered light that leaves
+  /// ends in the ambient light, and each place where it scatters is lit by the lights' straight rays. The solid is lit
+  /// as elsewhere and sends a walk back into the medium once.
+  glm::dvec3 walk(const ReliefPlace&, glm::dvec3 p, glm::dvec3 direction, const Visible&, const Objects&,
+                  Random&) const;
 
   const Scene* scene_;
   const Relief* relief_;

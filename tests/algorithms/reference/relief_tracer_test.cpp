@@ -138,5 +138,66 @@ TEST(ReliefTracer, BuriedMediumIsNotSeen) {
             b.radiance(place_at_origin(), v, *b.first_hit(place_at_origin(), v), everything));
 }
 
+glm::dvec3 mean_radiance(const Scene& scene, const glm::dvec3& v, int walks) {
+  const Illumination light(scene);
+  const ReliefTracer tracer(scene, 0, light);
+  const auto hit = tracer.first_hit(place_at_origin(), v);
+  Random random(3);
+  glm::dvec3 sum(0.0);
+  for (int i = 0; i < walks; ++i)
+    sum += tracer.radiance(place_at_origin(), v, *hit, everything, {}, &random);
+  return sum / static_cast<double>(walks);
+}
+
+// A medium that scatters as good as nothing is one that absorbs.
+TEST(ReliefTracer, WalksWithoutScatteringAreRays) {
+  Relief relief = flat_relief();
+  const Scene clear = relief_scene(relief);
+  relief.scattering = glm::vec3(1e-6F);
+  const glm::dvec3 v = glm::normalize(glm::dvec3(0.3, 0.2, -1.0));
+  const glm::dvec3 expected = mean_radiance(clear, v, 1), found = mean_radiance(relief_scene(relief), v, 4000);
+  // Distances are drawn where absorption could have ended them, so that walks weigh differently: 4000 of them.
+  EXPECT_LT(glm::distance(found, expected), 0.01 * glm::length(expected));
+}
+
+// In light that is the same everywhere a white solid under a medium that takes nothing is as bright as its
+// surroundings.
+TEST(ReliefTracer, WhiteFurnaceWithAScatteringMedium) {
+  Relief relief = flat_relief();
+  relief.solid.albedo = glm::vec3(1.0F);
+  relief.absorption = glm::vec3(0.0F);
+  relief.scattering = {2.0F, 10.0F, 40.0F};
+  relief.anisotropy = 0.5F;
+  Scene scene = relief_scene(relief);
+  scene.lights.clear();
+  scene.ambient = glm::vec3(1.0F);
+  scene.environment.zenith = scene.environment.horizon = scene.environment.ground = glm::vec3(1.0F);
+  const glm::dvec3 found = mean_radiance(scene, glm::normalize(glm::dvec3(0.3, 0.2, -1.0)), 4000);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(found[c], 1.0, 0.03);  // the channels' weights vary about 1
+}
+
+// A thin albedo over a black solid: single scattering in closed form, and second orders a hundredth of it.
+TEST(ReliefTracer, ScattersOnceInClosedForm) {
+  Relief relief = flat_relief();
+  relief.index = 1.0F;
+  relief.solid.albedo = glm::vec3(0.0F);
+  relief.absorption = glm::vec3(9.9F);
+  relief.scattering = glm::vec3(0.1F);
+  relief.anisotropy = 0.4F;
+  Scene scene = relief_scene(relief);
+  scene.ambient = glm::vec3(0.0F);
+  scene.environment.zenith = scene.environment.horizon = scene.environment.ground = glm::vec3(0.0F);
+  const glm::dvec3 v = glm::normalize(glm::dvec3(0.3, 0.2, -1.0)), found = mean_radiance(scene, v, 100'000);
+  const double mu = -v.z, mu_light = 0.8, cosine = glm::dot(v, glm::dvec3(0.6, 0.0, 0.8)), g = 0.4;
+  const double base = 1 + g * g - 2 * g * cosine, both = 1 / mu + 1 / mu_light;
+  const double phase = (1 - g * g) / (4 * std::numbers::pi * base * std::sqrt(base));
+  for (int c = 0; c < 3; ++c) {
+    const double expected =
+        0.01 * phase * rgb(scene.lights[0].intensity)[c] / mu * (1 - std::exp(-10.0 * (kTop - kFloor) * both)) / both;
+    EXPECT_NEAR(found[c], expected, 0.02 * expected) << c;
+  }
+}
+
 }  // namespace
 }  // namespace pellucid

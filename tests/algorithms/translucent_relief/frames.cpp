@@ -12,6 +12,7 @@
 #include "algorithms/shaders/optics.hpp"
 #include "tests/algorithms/relief_scenes.hpp"
 #include "tests/algorithms/rendered.hpp"
+#include "tests/algorithms/scene/folder_test.hpp"
 
 namespace pellucid {
 namespace {
@@ -230,12 +231,24 @@ TEST(TranslucentRelief, OddMapsAndLights) {
       << "a medium below the solid is not there";
   Scene unmapped = relief_scene(relief);
   unmapped.meshes[0].uvs.clear();
-  try {
-    frame(std::move(unmapped), settings());
-    FAIL() << "a mesh without texture coordinates was drawn";
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "'ground' of scene 'relief' has no texture coordinates, so that no relief can lie on it (mesh 'plane')");
+  EXPECT_EQ(message_of([&] { frame(std::move(unmapped), settings()); }),
+            "'ground' of scene 'relief' has no texture coordinates, so that no relief can lie on it (mesh 'plane')");
+  Scene creased = relief_scene(relief);
+  creased.meshes[0].uvs.assign(creased.meshes[0].uvs.size(), glm::vec2(0.5F));
+  EXPECT_EQ(message_of([&] { frame(std::move(creased), settings()); }),
+            "'ground' of scene 'relief': the texture coordinates around vertex 0 of mesh 'plane' span no area, so that "
+            "it has no tangents");
+}
+
+// Maps of one texel: all searches meet a level layer over a level floor.
+TEST(TranslucentRelief, MapsOfOneTexelByEverySearch) {
+  Relief relief = two_fields();
+  relief.solid = flat_layer(-0.2F, -0.3F);
+  relief.translucent = flat_layer(-0.05F, -0.3F);
+  const Image expected = truth(relief_scene(relief), 96, 72);
+  for (const char* search : {"linear", "max_mip", "cone_step"}) {
+    // The edge of the mesh, where a rounding tells whether a ray leaves it, is a few pixels.
+    EXPECT_LT(difference(frame(relief_scene(relief), settings({{"search", search}})), expected).mean, 2e-4) << search;
   }
 }
 
