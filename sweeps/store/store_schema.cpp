@@ -1,5 +1,6 @@
 #include "sweeps/store/store_schema.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -16,7 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kApplicationId = 0x50454c43;  // "PELC"
+constexpr const char* kDriftName = "baseline_drift";  // no field of a row: it changes with what is measured afterwards
+constexpr int kApplicationId = 0x50454c43;            // "PELC"
 
 // Rows are flat JSON objects: their columns are the parameters of whatever techniques there are. Fields that queries
 // need stand beside them. A point has a row for each device and driver that it was measured on; one that failed before
@@ -41,6 +43,21 @@ CREATE TABLE baselines(rank INTEGER PRIMARY KEY, sweep TEXT NOT NULL, point TEXT
                        frame_ms_median REAL NOT NULL, frame_ms BLOB NOT NULL, device TEXT NOT NULL DEFAULT '',
                        driver TEXT NOT NULL DEFAULT '', host TEXT NOT NULL DEFAULT '');
 )";
+
+// The baseline's measurements around a row's time, and the first, of its device, driver and host: with them the view
+// works out what drift_at() in store.cpp does. A spec whose baseline has changed starts a new series.
+constexpr const char* kBaselineOfRow = R"((SELECT rank FROM baselines WHERE sweep = m.sweep
+  AND point = (SELECT point FROM baselines WHERE sweep = m.sweep ORDER BY unix_s DESC, device DESC, driver DESC, host DESC LIMIT 1)
+  AND device IN ('', p.device) AND driver IN ('', p.driver)
+  AND (host = '' OR host = coalesce(json_extract(p.row, '$.host'), host))
+  {} LIMIT 1))";
+constexpr const char* kRowTime = "coalesce(json_extract(p.row, '$.timed_unix_s'), 0)";
+constexpr const char* kDrift = R"(
+  CASE WHEN coalesce(json_extract(p.row, '$.timing'), 'off') = 'off' THEN NULL
+  WHEN after.rank IS NULL THEN before.frame_ms_median / first.frame_ms_median - 1
+  WHEN before.rank IS NULL THEN after.frame_ms_median / first.frame_ms_median - 1
+  ELSE (before.frame_ms_median + ({0} - before.unix_s) / (after.unix_s - before.unix_s) *
+        (after.frame_ms_median - before.frame_ms_median)) / first.frame_ms_median - 1 END)";
 
 std::string set_version(int version) {
   return fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kApplicationId, version);
@@ -142,7 +159,9 @@ void ResultsView::load() {
   Statement columns(database_, "SELECT name, type FROM columns");
   while (columns.step())
     known_[columns.text(0)] = columns.text(1);
-  stale_ = database_.integer("SELECT count(*) FROM sqlite_master WHERE name = 'results'") == 0;
+  // An earlier version of the program may have defined it otherwise.
+  Statement view(database_, "SELECT sql FROM sqlite_master WHERE name = 'results'");
+  stale_ = !view.step() || view.text(0) != definition();
 }
 
 void ResultsView::describe(const std::string& name, const std::string& type, const std::string& kind,
@@ -164,6 +183,9 @@ void ResultsView::describe(const std::string& name, const std::string& type, con
 }
 
 void ResultsView::describe(const Plan& plan) {
+  for (const char* name : {"sweep", "block", "point"})
+    describe(name, "TEXT", "result", meaning(name).unit, meaning(name).description);
+  describe(kDriftName, "REAL", "result", meaning(kDriftName).unit, meaning(kDriftName).description);
   for (const auto& [name, info] : plan.parameters) {
     const char* type = info.type == ValueType::real ? "REAL" : info.type == ValueType::choice ? "TEXT" : "INTEGER";
     describe(name, type, "parameter", info.unit, info.doc);
@@ -171,13 +193,20 @@ void ResultsView::describe(const Plan& plan) {
   write_view();
 }
 
+ColumnMeaning ResultsView::meaning(const std::string& name) const {
+  if (const auto known = meanings_.find(name); known != meanings_.end()) return known->second;
+  const std::size_t dot = name.find('.');
+  const auto object = meanings_.find(name.substr(0, dot));
+  if (dot == std::string::npos || object == meanings_.end()) return {};
+  return {object->second.unit, fmt::format("{}: {}", object->second.description, name.substr(dot + 1))};
+}
+
 void ResultsView::note(const std::string& name, const json& value) {
   if (value.is_null()) return;
   const std::string type = sql_type(value);
   const auto known = known_.find(name);
   if (known == known_.end()) {
-    const auto meaning = meanings_.find(name);
-    const ColumnMeaning known_as = meaning != meanings_.end() ? meaning->second : ColumnMeaning{};
+    const ColumnMeaning known_as = meaning(name);
     describe(name, type, "result", known_as.unit, known_as.description);
     return;
   }
@@ -202,18 +231,30 @@ void ResultsView::add(const json& row) {
   write_view();
 }
 
-void ResultsView::write_view() {
-  if (!stale_) return;
-  stale_ = false;
-  std::string sql = "DROP VIEW IF EXISTS results; CREATE VIEW results AS SELECT m.sweep, m.block, p.id AS point";
+std::string ResultsView::definition() const {
+  std::string sql = "CREATE VIEW results AS SELECT m.sweep, m.block, p.id AS point";
   for (const auto& [name, type] : known_) {
-    if (name == "sweep" || name == "block" || name == "point") continue;
+    if (name == "sweep" || name == "block" || name == "point" || name == kDriftName) continue;
     sql += fmt::format(", CAST(json_extract(p.row, {}) AS {}) AS {}", sql_quoted(json_path(name), '\''), type,
                        sql_quoted(name));
   }
-  database_.run(sql +
-                " FROM members m JOIN sweeps s ON s.name = m.sweep JOIN points p ON p.id = m.point "
-                "ORDER BY s.rank, m.rank, p.device, p.driver;");
+  sql += fmt::format(",{} AS {}", fmt::format(kDrift, kRowTime), kDriftName);
+  sql += " FROM members m JOIN sweeps s ON s.name = m.sweep JOIN points p ON p.id = m.point";
+  const auto join = [&](const char* alias, const std::string& which) {
+    sql += fmt::format(" LEFT JOIN baselines {0} ON {0}.rank = {1}", alias, fmt::format(kBaselineOfRow, which));
+  };
+  join("first", "ORDER BY unix_s");
+  join("before", fmt::format("AND unix_s < {} ORDER BY unix_s DESC", kRowTime));
+  join("after", fmt::format("AND unix_s >= {} ORDER BY unix_s", kRowTime));
+  return sql + " ORDER BY s.rank, m.rank, p.device, p.driver";
+}
+
+void ResultsView::write_view() {
+  if (!stale_) return;
+  stale_ = false;
+  database_.run(
+      "DROP VIEW IF EXISTS results; CREATE INDEX IF NOT EXISTS baselines_in_time ON baselines(sweep, unix_s); " +
+      definition() + ";");
 }
 
 }  // namespace pellucid::sweeps

@@ -17,45 +17,19 @@
 #include "gl/error.hpp"
 #include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/sqlite.hpp"
+#include "tests/sweeps/example_store.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
 using nlohmann::json;
-using test::FakeCatalogue;
+using test::Example;
+using test::fill;
 using test::input_error;
+using test::kSpec;
+using test::row_of;
 using test::TemporaryFolder;
-
-const char* const kSpec =
-    "name='s'\n[[run]]\nname='a'\ntechniques=['hulls']\nscenes=['forest']\nbaseline=true\n[run.axes]\nhulls=[1,2]\n"
-    "[[run]]\nname='b'\ntechniques=['hulls']\nscenes=['forest']\n[run.axes]\nhulls=[2,3]\n";
-
-struct Example {
-  FakeCatalogue catalogue;
-  Spec spec = parse_spec(kSpec, "s.toml", catalogue);
-  Plan plan = make_plan(spec, catalogue);
-};
-
-json row_of(const std::string& status, double timed_unix_s) {
-  return {{"status", status},
-          {"hulls", 2},
-          {"timing", "converged"},
-          {"frame_ms_median", 0.1},
-          {"timed_unix_s", timed_unix_s},
-          {"done_unix_s", timed_unix_s + 1},
-          {"device", "d"},
-          {"driver", "v"},
-          {"commit", "c"},
-          {"wall_s", 2.5},
-          {"pass_ms", {{"back", 0.05}}}};
-}
-
-void fill(const std::filesystem::path& path, const Example& e) {
-  Store store(path, Access::write);
-  store.put_plan(e.spec, e.plan);
-  store.put_row(e.plan.points[1].id, row_of("ok", 150), std::vector<double>{0.1, 0.2, 1.0 / 3});
-}
 
 TEST(Store, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
@@ -299,34 +273,6 @@ TEST(Store, AFailureBeforeAnyDeviceCountsUntilARowComes) {
   store.put_row(id, row_of("ok", 1), {});
   ASSERT_EQ(store.points().size(), 1U);
   EXPECT_FALSE(store.points()[0].failed);
-}
-
-TEST(Store, OffersItsRowsToSql) {
-  const TemporaryFolder folder;
-  const Example e;
-  fill(folder / "s.db", e);
-  const Database db(folder / "s.db", Database::Mode::read);
-  EXPECT_EQ(db.integer("SELECT count(*) FROM results"), 2);
-  EXPECT_EQ(db.integer("SELECT count(*) FROM results WHERE hulls = 2 AND timing = 'converged'"), 2);
-  Statement types(
-      db, "SELECT typeof(frame_ms_median), typeof(hulls), typeof(device), typeof(\"pass_ms.back\") FROM results");
-  ASSERT_TRUE(types.step());
-  EXPECT_EQ(types.text(0) + " " + types.text(1) + " " + types.text(2) + " " + types.text(3), "real integer text real");
-  Statement column(db, "SELECT type, kind, description FROM columns WHERE name = 'hulls'");
-  ASSERT_TRUE(column.step());
-  EXPECT_EQ(column.text(0) + " " + column.text(1) + " " + column.text(2), "INTEGER parameter a uniform");
-  // A whole number in the first row may be a real one in the next.
-  {
-    Store store(folder / "s.db", Access::write);
-    json row = row_of("ok", 3);
-    row["share"] = 1;
-    store.put_row(e.plan.points[0].id, row, {});
-    row["share"] = 0.5;
-    store.put_row(e.plan.points[2].id, row, {});
-  }
-  EXPECT_EQ(Database(folder / "s.db", Database::Mode::read)
-                .integer("SELECT count(*) FROM results WHERE typeof(share) = 'real'"),
-            2);
 }
 
 TEST(Store, KeepsSamplesLittleEndian) {
