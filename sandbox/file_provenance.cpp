@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sandbox/arguments.hpp"
+#include "sweeps/spec/clock.hpp"
 #include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {

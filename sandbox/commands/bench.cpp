@@ -19,6 +19,7 @@
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/bench/ceilings.hpp"
+#include "sweeps/spec/clock.hpp"
 #include "sweeps/spec/provenance.hpp"
 
 namespace pellucid::sandbox {

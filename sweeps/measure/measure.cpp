@@ -24,6 +24,7 @@
 #include "sweeps/measure/class_errors.hpp"
 #include "sweeps/measure/frame_clock.hpp"
 #include "sweeps/measure/stopping.hpp"
+#include "sweeps/spec/clock.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/provenance.hpp"
 
@@ -107,15 +108,29 @@ void Measurer::open_session(const Point& point) {
 void Measurer::time_frames(const Point& point, Measurement& result) {
   FrameClock clock(gl::Detail::frame);
   const FrameClock::Draw frame = [&](gl::PassTimer& timer) { session_->render(timer); };
-  WarmUp warm_up(kWarmUpFrames, kWarmUpShare * point.timing.max_seconds);
-  while (!warm_up.done())
-    warm_up.add(clock.next(frame).frame_ms);
+  std::size_t warmup_frames = 0;
+  const auto warm_up = [&] {
+    WarmUp warming(kWarmUpFrames, kWarmUpShare * point.timing.max_seconds);
+    while (!warming.done())
+      warming.add(clock.next(frame).frame_ms);
+    warmup_frames += warming.frames();
+  };
+  warm_up();
 
   StoppingRule rule(point.timing);
   result.row["timed_unix_s"] = unix_now_s();
+  SleepWatch sleep;
+  double slept_s = 0;
   const auto start = std::chrono::steady_clock::now();
   while (rule.verdict() == Verdict::more) {
     const double frame_ms = clock.next(frame).frame_ms;
+    if (const double s = sleep.slept_s(); s > 0) {
+      // Neither this frame nor those under way tell a frame's time, and the machine is cold again.
+      slept_s += s;
+      clock.drain();
+      warm_up();
+      continue;
+    }
     if (!std::isfinite(frame_ms) || frame_ms < 0)
       throw RuntimeError(fmt::format("the clock gave {} ms for a frame", frame_ms));
     rule.add(frame_ms, seconds_since(start));
@@ -132,7 +147,8 @@ void Measurer::time_frames(const Point& point, Measurement& result) {
   row["frame_ms_q75"] = summary.q75_ms;
   if (summary.median_ms > 0) row["fps"] = 1000 / summary.median_ms;
   row["frames"] = rule.samples_ms().size();
-  row["warmup_frames"] = warm_up.frames();
+  row["warmup_frames"] = warmup_frames;
+  if (slept_s > 0) row["slept_s"] = slept_s;
   row["timing"] = rule.verdict() == Verdict::converged ? "converged" : "unconverged";
   row["clock"] = gl::name(clock.clock());
   result.frame_ms_samples = rule.samples_ms();

@@ -1,7 +1,6 @@
 #include "sweeps/spec/provenance.hpp"
 
 #include <array>
-#include <chrono>
 #include <ctime>
 #include <fstream>
 
@@ -13,10 +12,6 @@ namespace pellucid::sweeps {
 
 std::string utc_text(double unix_s) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(unix_s)));
-}
-
-double unix_now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 std::string host_name() {

@@ -12,8 +12,6 @@ extern const bool kDirty;
 
 /// "2007-10-29T12:34:56Z"
 std::string utc_text(double unix_s);
-/// Wall clock.
-double unix_now_s();
 
 /// This machine's name on its network.
 std::string host_name();

@@ -23,6 +23,11 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path) {
   }
   if (mode == Mode::create) {
     open(path.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    // SQLite opens a file that it may not write for reading, and says so at the first write only.
+    if (sqlite3_db_readonly(handle_, "main") == 1) {
+      sqlite3_close(std::exchange(handle_, nullptr));
+      throw RuntimeError(fmt::format("store '{}' cannot be written: the file is read-only", path.string()));
+    }
     return;
   }
   if (!std::filesystem::exists(path, error)) {
@@ -45,7 +50,13 @@ void Database::open_for_reading() {
   if (code == SQLITE_OK) return;
   const bool unwritable = code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
   std::error_code error;
-  if (!unwritable || std::filesystem::exists(path_.string() + "-wal", error)) fail(code);
+  if (!unwritable) fail(code);
+  if (std::filesystem::exists(path_.string() + "-wal", error)) {
+    throw RuntimeError(fmt::format(
+        "store '{0}' has rows in its log, {0}-wal, which only a program that may write their folder can read; "
+        "copy both files to another folder",
+        path_.string()));
+  }
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(path_).string()) {
     uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", static_cast<unsigned>(c)) : std::string(1, c);
@@ -86,6 +97,8 @@ void Database::fail(int code) const {
     case SQLITE_IOERR:
       throw RuntimeError(
           fmt::format("{} cannot be written: {}; is the disk full? Rows stored so far stay", where, words));
+    case SQLITE_READONLY:
+      throw RuntimeError(fmt::format("{} cannot be written: {}", where, words));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       throw RuntimeError(where + " is locked by another program");

@@ -122,11 +122,11 @@ std::vector<StoredPoint> Store::points() const {
   Statement statement(
       state_->database,
       "SELECT id, failed, json_extract(row, '$.technique'), json_extract(row, '$.code_hash'), device, driver, "
-      "json_extract(row, '$.commit'), json_extract(row, '$.wall_s') "
+      "json_extract(row, '$.commit'), json_extract(row, '$.wall_s'), done_unix_s "
       "FROM points WHERE json_valid(row) ORDER BY id, device, driver");
   while (statement.step()) {
     result.push_back({statement.text(0), statement.integer(1) != 0, statement.text(2), statement.text(3),
-                      statement.text(4), statement.text(5), statement.text(6), statement.real(7)});
+                      statement.text(4), statement.text(5), statement.text(6), statement.real(7), statement.real(8)});
   }
   return result;
 }

@@ -76,7 +76,7 @@ struct StoredPoint {
   bool failed = false;
   std::string technique, code_hash;    ///< the hash is empty in rows of versions that did not know it
   std::string device, driver, commit;  ///< empty for a point that failed before its worker said hello
-  double wall_s = 0;
+  double wall_s = 0, done_unix_s = 0;
 };
 
 enum class Access { read, write };

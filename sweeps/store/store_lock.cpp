@@ -101,9 +101,14 @@ WriteLock::WriteLock(const std::filesystem::path& store) : store_(store.string()
 bool WriteLock::acquire() {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file_ < 0) {
-    if (errno != EEXIST) {
-      throw RuntimeError(fmt::format("store '{}' cannot be written: {}", store_, std::strerror(errno)));
+    const int reason = errno;
+    if (reason == EACCES || reason == EROFS) {
+      const std::string folder = std::filesystem::path(store_).parent_path().string();
+      throw RuntimeError(fmt::format("store '{}' cannot be written: its folder '{}' is read-only ({})", store_,
+                                     folder.empty() ? "." : folder, std::strerror(reason)));
     }
+    if (reason != EEXIST)
+      throw RuntimeError(fmt::format("store '{}' cannot be written: {}", store_, std::strerror(reason)));
     const int other = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
     if (other < 0 && errno == ENOENT) return false;
     if (other < 0) {
@@ -139,7 +144,16 @@ bool WriteLock::take_over(int file) {
   struct stat judged {};
   if (::fstat(file, &judged) != 0) return false;
   const std::optional<Owner> owner = read_owner(file);
-  if (!owner && std::time(nullptr) - judged.st_mtime < 10) return false;  // its owner may be about to sign
+  // Without a name its owner may be about to sign. The file's age may be wrong, since clocks are set; then ten seconds
+  // of waiting for it tell.
+  if (!owner && std::time(nullptr) - judged.st_mtime < 10) {
+    const auto now = std::chrono::steady_clock::now();
+    if (unsigned_inode_ != judged.st_ino) {
+      unsigned_inode_ = judged.st_ino;
+      unsigned_since_ = now;
+    }
+    if (now - unsigned_since_ < std::chrono::seconds(10)) return false;
+  }
   if (owner && owner->host != host_name()) {
     throw RuntimeError(fmt::format(
         "store '{}' is being written by process {} of {}, or was when that ended; if no sweep runs there, remove {}",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -32,7 +33,8 @@ class WriteLock {
   bool take_over(int file);
   std::string store_, path_;
   int file_ = -1;
-  std::uint64_t inode_ = 0;
+  std::uint64_t inode_ = 0, unsigned_inode_ = 0;
+  std::chrono::steady_clock::time_point unsigned_since_;
 };
 
 }  // namespace pellucid::sweeps

@@ -19,9 +19,11 @@
 #include "gl/error.hpp"
 #include "sweeps/measure/quiet_lock.hpp"
 #include "sweeps/quantities/quantities.hpp"
+#include "sweeps/spec/clock.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/store.hpp"
+#include "sweeps/workers/point_row.hpp"
 #include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/stop_signals.hpp"
 #include "sweeps/workers/worker_client.hpp"
@@ -37,38 +39,6 @@ constexpr std::size_t kBaselineEvery = 8;
 
 double seconds_since(SteadyClock::time_point start) {
   return std::chrono::duration<double>(SteadyClock::now() - start).count();
-}
-
-std::string describe(const Point& point) {
-  std::string text = fmt::format("{} {}", point.technique, point.scene);
-  for (const std::string& name : point.assigned)
-    text += fmt::format(" {}={}", name, to_text(point.parameters.at(name)));
-  return text + fmt::format(" {}x{}", point.size.width, point.size.height);
-}
-
-std::string outcome_text(const json& row) {
-  std::string text;
-  if (row.contains("frame_ms_median")) {
-    text = fmt::format("{:.3g} ms", row.at("frame_ms_median").get<double>());
-    if (row.value("timing", "") == "unconverged") text += " (unconverged)";
-    if (const auto saturated = row.value("saturated_pixels", 0); saturated > 0)
-      text += fmt::format(" ({} pixels saturate 16-bit floats)", saturated);
-  }
-  for (const char* metric : {"flip_mean", "rmse"}) {
-    if (row.contains(metric))
-      text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", metric, row.at(metric).get<double>());
-  }
-  return text.empty() ? "done" : text;
-}
-
-/// Why a row that a worker calls done is not; empty when it is sound.
-std::string flaw(const json& row, const Point& point) {
-  if (point.timing.enabled && !row.contains("frame_ms_median")) return "the worker gave no frame time";
-  for (const auto& [name, value] : row.items()) {
-    // JSON has no NaN: it arrives as null. Equal images have an infinite PSNR.
-    if (value.is_null() && !name.starts_with("psnr")) return fmt::format("{} is not a finite number", name);
-  }
-  return "";
 }
 
 class Runner {
@@ -102,9 +72,18 @@ class Runner {
     }
     summary_.planned = mine_.size();
     record_.host = host_name();
+    double latest_s = 0;
     for (StoredPoint& point : store_.points()) {
+      latest_s = std::max(latest_s, point.done_unix_s);
       if (!point.device.empty()) devices_.emplace(point.device, point.driver);
       stored_[point.id].push_back(std::move(point));
+    }
+    if (const double ahead_s = latest_s - unix_now_s(); ahead_s > kClockJump_s && !options_.quiet) {
+      fmt::print(
+          stderr,
+          "warning: rows in '{}' are {} ahead of this machine's clock, which was set back or differs from another "
+          "machine's; the baseline's drift is wrong for rows of times that both claim\n",
+          path_.string(), duration_text(ahead_s));
     }
     // Whether a point is missing on a device is known once its worker has said hello; on the only one, at once.
     if (!options_.devices.empty() || devices_.size() > 1 || missing_on_the_only_device()) {
@@ -255,8 +234,24 @@ class Runner {
             [this] {
               const std::lock_guard lock(mutex_);
               progress_->tick();
+              watch_clock();
               return !stopping();
+            },
+            [this](const std::string& line) {
+              const std::lock_guard lock(mutex_);
+              progress_->note(line);
             }};
+  }
+
+  /// Tells when the machine's clock has been set; the rows' times go on as if it had not.
+  void watch_clock() {
+    const double set_by_s = clock_set_by_s();
+    const double jump_s = set_by_s - clock_set_by_s_;
+    if (std::abs(jump_s) < kClockJump_s) return;
+    clock_set_by_s_ = set_by_s;
+    progress_->note(
+        fmt::format("note: the machine's clock was set {} by {}; the times of this sweep go on without the jump",
+                    jump_s > 0 ? "forward" : "back", duration_text(std::abs(jump_s))));
   }
 
   void show(const std::string& what) {
@@ -287,21 +282,27 @@ class Runner {
     return plan_.baseline && !worker.baseline_broken && worker.since_baseline >= kBaselineEvery;
   }
 
-  WorkerClient::Answer ask(Worker& worker, const json& request, const std::string& id) {
+  WorkerClient::Answer ask(Worker& worker, json request, const std::string& id) {
     const auto start = SteadyClock::now();
+    request["unix_minus_boot_s"] = unix_minus_boot_s();
     WorkerClient::Answer answer = worker.client.ask(request, id, hooks());
     const std::lock_guard lock(mutex_);
     record_.measuring_s += seconds_since(start) / static_cast<double>(workers_.size());
+    if (const auto slept = answer.row.find("slept_s"); slept != answer.row.end() && slept->is_number()) {
+      progress_->note(fmt::format("note: the machine slept for {}; the frames under way then do not count",
+                                  duration_text(slept->get<double>())));
+    }
     return answer;
   }
 
   void measure_baseline(Worker& worker) {
     Point point = plan_.points[*plan_.baseline];
     point.timing.max_samples = point.timing.min_samples;
-    show("baseline " + describe(point));
+    show("baseline " + summary_of(point));
     const WorkerClient::Answer answer = ask(worker, {{"type", "time"}, {"point", point_to_json(point)}}, point.id);
     if (answer.outcome == WorkerClient::Outcome::stopped) return;
-    const std::string wrong = answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw(answer.row, point);
+    const std::string wrong =
+        answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw_of(answer.row, point);
     const std::lock_guard lock(mutex_);
     if (!wrong.empty()) {
       worker.baseline_broken = true;
@@ -317,7 +318,7 @@ class Runner {
 
   /// Measures a point and commits its row, whatever came of it; false when stopped meanwhile.
   bool measure(Worker& worker, const Point& point) {
-    const std::string what = describe(point);
+    const std::string what = summary_of(point);
     show(what);
     const double started = unix_now_s();
     const auto start = SteadyClock::now();
@@ -330,16 +331,14 @@ class Runner {
       answer = ask(worker, request, point.id);
     }
     if (answer.outcome == WorkerClient::Outcome::stopped) return false;
-    std::string failure = answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw(answer.row, point);
+    std::string failure = answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw_of(answer.row, point);
 
     json row = failure.empty() ? std::move(answer.row) : json::object();
     const double wall_s = seconds_since(start);
-    describe_row(row, point, worker.client.hello());
-    row["status"] = failure.empty() ? "ok" : "failed";
-    row["failure"] = failure;
-    row["started_utc"] = utc_text(started);
-    row["done_unix_s"] = unix_now_s();
-    row["wall_s"] = wall_s;
+    put_point(row, point);
+    put_machine(row, worker.client.hello(), record_.host);
+    put_outcome(row, failure, started, wall_s);
+    row["argv"] = argv_;
 
     const std::lock_guard lock(mutex_);
     const auto storing = SteadyClock::now();
@@ -357,7 +356,7 @@ class Runner {
       ++summary_.measured;
       if (row.value("timing", "") == "unconverged") ++summary_.unconverged;
     }
-    progress_->finish(what, failure.empty() ? outcome_text(row) : "failed", wall_s);
+    progress_->finish(what, failure.empty() ? outcome_of(row) : "failed", wall_s);
     return true;
   }
 
@@ -369,28 +368,8 @@ class Runner {
     store_.update_run(run_, record_);
   }
 
-  /// The part of a row that is known without a worker.
-  void describe_row(json& row, const Point& point, const WorkerClient::Hello& hello) const {
-    for (const auto& [name, value] : point.parameters)
-      row[name] = value_to_json(value);
-    row["technique"] = point.technique;
-    row["scene"] = point.scene;
-    row["view"] = point.view;
-    row["width"] = point.size.width;
-    row["height"] = point.size.height;
-    row["repeat"] = repeat_command(point);
-    row["device"] = hello.device;
-    row["driver"] = hello.driver;
-    row["host"] = record_.host;
-    if (!row.contains("clock")) row["clock"] = hello.clock;
-    if (!row.contains("scene_hash")) row["scene_hash"] = point.scene_hash;
-    row["code_hash"] = point.code_hash;
-    row["commit"] = kCommit;
-    row["dirty"] = kDirty;
-    row["argv"] = argv_;
-  }
-
   static constexpr double kUpdateEvery_s = 5;
+  static constexpr double kClockJump_s = 1;
 
   const Spec& spec_;
   const Plan& plan_;
@@ -416,6 +395,7 @@ class Runner {
   std::int64_t run_ = 0;
   SteadyClock::time_point start_{};
   double updated_s_ = 0;
+  double clock_set_by_s_ = clock_set_by_s();  // what has been told of it
   std::exception_ptr error_;
   std::atomic<bool> given_up_ = false;  // after `fail_after` failures: no more points
   std::atomic<bool> broken_ = false;    // there is an error: stop at once

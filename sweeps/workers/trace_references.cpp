@@ -48,7 +48,8 @@ ReferencesSummary trace_references(const Spec& spec, const Plan& plan, const std
                                   [&] {
                                     progress.tick();
                                     return !signals.caught();
-                                  }};
+                                  },
+                                  [&](const std::string& line) { progress.note(line); }};
   for (const Point* point : points) {
     if (signals.caught() || signals.warned()) break;
     const std::string what =

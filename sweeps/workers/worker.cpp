@@ -18,6 +18,7 @@
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
 #include "sweeps/measure/measure.hpp"
+#include "sweeps/spec/clock.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/workers/worker_protocol.hpp"
 
@@ -76,6 +77,7 @@ class Ticker {
 json answer(Measurer& measurer, const json& request) {
   const std::string id = request.at("point").at("id");
   try {
+    if (request.contains("unix_minus_boot_s")) keep_unix_minus_boot_s(request.at("unix_minus_boot_s"));
     const Point point = point_from_json(request.at("point"));
     const std::string type = request.at("type");
     if (type == "reference") {

@@ -16,6 +16,8 @@ namespace {
 using nlohmann::json;
 using Event = WorkerProcess::Event;
 
+constexpr std::chrono::milliseconds kWatchEvery{500};
+
 std::chrono::steady_clock::time_point after(double seconds) {
   return std::chrono::steady_clock::now() +
          std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
@@ -94,11 +96,31 @@ WorkerClient::Answer WorkerClient::crashed(const std::string& why) {
   return answer;
 }
 
+/// Tells once that the worker has been stopped, and once that it goes on.
+void WorkerClient::watch(const Hooks& hooks) {
+  if (process_->halted() == halted_) return;
+  halted_ = !halted_;
+  hooks.note(halted_
+                 ? fmt::format("note: the worker has been stopped by a signal and has {} for its point; to let it go "
+                               "on: kill -CONT {}",
+                               duration_text(timeout_s_), process_->pid())
+                 : "note: the worker goes on");
+}
+
 WorkerClient::Answer WorkerClient::ask(const json& request, const std::string& id, const Hooks& hooks) {
   const auto deadline = after(timeout_s_);
+  halted_ = false;
+  auto watched = std::chrono::steady_clock::now();
+  const auto idle = [&] {
+    if (const auto now = std::chrono::steady_clock::now(); now - watched > kWatchEvery) {
+      watched = now;
+      watch(hooks);
+    }
+    return hooks.idle();
+  };
   if (!process_->send(to_line(request))) return crashed("");
   for (;;) {
-    const WorkerProcess::Received received = process_->receive(deadline, hooks.idle);
+    const WorkerProcess::Received received = process_->receive(deadline, idle);
     switch (received.event) {
       case Event::stopped: {
         process_.reset();
@@ -107,7 +129,8 @@ WorkerClient::Answer WorkerClient::ask(const json& request, const std::string& i
         return answer;
       }
       case Event::timeout:
-        return crashed(fmt::format("the worker took longer than timeout_s = {}", timeout_s_));
+        return crashed(fmt::format("the worker {}took longer than timeout_s = {}",
+                                   process_->halted() ? "was stopped by a signal and " : "", timeout_s_));
       case Event::ended:
         return crashed(
             received.line.empty() ? "" : fmt::format("the worker's answer breaks off: '{}'", excerpt(received.line)));

@@ -19,7 +19,8 @@ class WorkerClient {
  public:
   struct Hooks {
     std::function<void(const std::string& phase, double share)> progress;
-    std::function<bool()> idle;  ///< a few times a second; false stops the wait
+    std::function<bool()> idle;                         ///< a few times a second; false stops the wait
+    std::function<void(const std::string& line)> note;  ///< what a person should know now
   };
   struct Hello {
     std::string device, driver, clock;
@@ -48,9 +49,11 @@ class WorkerClient {
 
  private:
   Answer crashed(const std::string& why);
+  void watch(const Hooks&);
   std::vector<std::string> command_;
   double timeout_s_;
   std::unique_ptr<WorkerProcess> process_;
+  bool halted_ = false;  // by a signal, and it has been told
   Hello hello_;
 };
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -23,6 +25,8 @@ namespace {
 constexpr std::size_t kMaxLineBytes = std::size_t{64} << 20;
 constexpr std::size_t kErrorTailBytes = 4096;
 constexpr int kTickMs = 100;
+/// Between two turns of the wait; more means that this process was stopped.
+constexpr std::chrono::seconds kLongestTurn{2};
 
 void close_file(int& file) {
   if (file >= 0) ::close(std::exchange(file, -1));
@@ -46,6 +50,13 @@ bool WorkerProcess::alive() const {
   if (child_.pid < 0 || ::waitid(P_PID, static_cast<id_t>(child_.pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0)
     return false;
   return info.si_pid == 0;
+}
+
+bool WorkerProcess::halted() const {
+  std::ifstream file(fmt::format("/proc/{}/stat", child_.pid));
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::size_t name_end = text.rfind(") ");  // the name may hold anything
+  return child_.pid >= 0 && name_end != std::string::npos && text.substr(name_end + 2, 1) == "T";
 }
 
 bool WorkerProcess::send(const std::string& line) {
@@ -77,14 +88,17 @@ bool WorkerProcess::read_into(int& file, std::string& buffer) {
 
 WorkerProcess::Received WorkerProcess::receive(std::chrono::steady_clock::time_point deadline,
                                                const std::function<bool()>& idle) {
-  for (;;) {
+  for (auto last = std::chrono::steady_clock::now();;) {
     if (const std::size_t end = input_.find('\n'); end != std::string::npos) {
       Received received{Event::line, input_.substr(0, end)};
       input_.erase(0, end + 1);
       return received;
     }
     if (child_.from < 0 || input_.size() > kMaxLineBytes) return {Event::ended, std::exchange(input_, {})};
-    if (std::chrono::steady_clock::now() >= deadline) return {Event::timeout, {}};
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last > kLongestTurn) deadline += now - last;
+    last = now;
+    if (now >= deadline) return {Event::timeout, {}};
     if (!idle()) return {Event::stopped, {}};
     std::array<pollfd, 2> files{pollfd{child_.from, POLLIN, 0}, pollfd{child_.errors, POLLIN, 0}};
     if (::poll(files.data(), files.size(), kTickMs) <= 0) continue;  // a tick, or a signal that `idle` will see

@@ -19,6 +19,8 @@ class WorkerProcess {
 
   /// False when it has ended by itself.
   bool alive() const;
+  /// True while a signal such as SIGSTOP keeps it from running.
+  bool halted() const;
   /// False when the child no longer reads.
   bool send(const std::string& line);
 
@@ -27,8 +29,8 @@ class WorkerProcess {
     Event event = Event::timeout;
     std::string line;  ///< without the newline; at `ended`, what came without one
   };
-  /// Waits for the next whole line until `deadline`. `idle` is called a few times a second; when it returns false the
-  /// wait is `stopped`.
+  /// Waits for the next whole line until `deadline`, which moves on by the time for which this process itself was
+  /// stopped. `idle` is called a few times a second; when it returns false the wait is `stopped`.
   Received receive(std::chrono::steady_clock::time_point deadline, const std::function<bool()>& idle);
 
   /// Kills it if it runs, waits, and tells how it ended: "killed by signal 11 (Segmentation fault)", "ended with status

@@ -6,13 +6,14 @@
 
 /// The messages between parent and worker, one JSON object per line.
 ///
-///   worker → parent   {"type": "hello", "protocol": 1, "device": …, "driver": …, "clock": …}     once, when it can
-///   render parent → worker   {"type": "measure", "point": {…}, "references": FOLDER, "picture": FILE}   a point, in
+///   worker → parent   {"type": "hello", "protocol": 1, "device": …, "driver": …, "clock": …}    once, when it can
+///   render parent → worker   {"type": "measure", "point": {…}, "references": FOLDER, "picture": FILE}  a point, in
 ///   full; with
-///                                                                                                `picture`, kept
-///                     {"type": "reference", "point": {…}, "references": FOLDER}                its reference alone
-///                     {"type": "time", "point": {…}}                                             its frame time alone
-///   worker → parent   {"type": "progress", "phase": "reference", "share": 0.4}                   any number
+///                                                                                               `picture`, kept
+///                     {"type": "reference", "point": {…}, "references": FOLDER}                 its reference alone
+///                     {"type": "time", "point": {…}}                                            its frame time alone
+///                     Each may have "unix_minus_boot_s" (sweeps/spec/clock.hpp).
+///   worker → parent   {"type": "progress", "phase": "reference", "share": 0.4}                  any number
 ///                     {"type": "done", "id": …, "row": {…}, "frame_ms_samples": […]}
 ///                     {"type": "failed", "id": …, "reason": …}
 ///

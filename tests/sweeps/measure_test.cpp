@@ -1,9 +1,12 @@
 #include "sweeps/measure/measure.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,10 +14,12 @@
 
 #include "gl/context.hpp"
 #include "gl/error.hpp"
+#include "sweeps/store/sqlite.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/run.hpp"
 #include "tests/sweeps/fake_catalogue.hpp"
 #include "tests/sweeps/fake_worker.hpp"
+#include "tests/sweeps/set_clocks.hpp"
 
 // With the real techniques and scenes, on whatever GL there is.
 namespace pellucid::sweeps {
@@ -88,6 +93,13 @@ TEST(Worker, MeasuresWhatTheContractNames) {
   EXPECT_NE(rows[0].at("scene_hash"), rows[1].at("scene_hash"));  // of the scene at these values
   EXPECT_EQ(rows[0].at("scene_hash"), rows[2].at("scene_hash"));
 
+  const Database db(folder / "s.db", Database::Mode::read);
+  EXPECT_EQ(db.integer("SELECT count(*) FROM columns WHERE description = ''"), 0) << "every column is explained";
+  Statement pass(db, "SELECT unit, description FROM columns WHERE name = 'pass_ms.hulls'");
+  ASSERT_TRUE(pass.step());
+  EXPECT_EQ(pass.text(0), "ms");
+  EXPECT_NE(pass.text(1).find(": hulls"), std::string::npos) << pass.text(1);
+
   const json& untimed = rows[4];
   EXPECT_EQ(untimed.at("timing"), "off");
   EXPECT_FALSE(untimed.contains("frame_ms_median"));
@@ -134,6 +146,33 @@ TEST_F(MeasurerTest, ADamagedReferenceIsTracedAgain) {
   EXPECT_EQ(rmse(second, point(0)), before);
   for (const auto& file : std::filesystem::directory_iterator(folder / "references"))
     EXPECT_GT(file.file_size(), 500U);
+}
+
+// The machine sleeps while a frame is drawn, which takes half a second longer for it.
+TEST_F(MeasurerTest, AFrameInWhichTheMachineSleptDoesNotCount) {
+  Point p = point(0);
+  p.metrics = {};
+  p.timing.min_samples = p.timing.max_samples = 300;
+  std::thread lid;
+  bool slept = false;
+  Measurer measurer(
+      [&](const char* phase, double) {
+        if (std::string(phase) != "timing" || slept) return;
+        slept = true;
+        lid = std::thread([] {
+          std::this_thread::sleep_for(std::chrono::milliseconds(60));
+          test::clock_offsets().monotonic_s = 0.5;
+          test::clock_offsets().boot_s = 100.5;
+        });
+      },
+      "");
+  const Measurement result = measurer.measure(p, folder / "references");
+  lid.join();
+  EXPECT_NEAR(result.row.at("slept_s").get<double>(), 100, 0.1);
+  EXPECT_EQ(result.frame_ms_samples.size(), 300U);
+  EXPECT_LT(*std::max_element(result.frame_ms_samples.begin(), result.frame_ms_samples.end()), 400);
+  test::clock_offsets().monotonic_s = test::clock_offsets().boot_s = 0;
+  EXPECT_FALSE(measurer.measure(p, folder / "references").row.contains("slept_s"));
 }
 
 TEST_F(MeasurerTest, GoesOnAfterAPointThatCannotBeMeasured) {

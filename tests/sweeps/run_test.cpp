@@ -131,13 +131,6 @@ TEST_F(Sweep, GoesOnAfterEveryKindOfFailure) {
   EXPECT_EQ(failure("leave"), "the worker ended with status 7");
 }
 
-TEST_F(Sweep, AStoppedWorkerCostsItsPoint) {
-  const SweepSummary summary = run(spec("timeout_s = 1\n") + "[run.axes]\ndoes = ['stop', 'good']\n");
-  EXPECT_EQ(summary.measured, 1U);
-  EXPECT_EQ(summary.failed, 1U);
-  EXPECT_EQ(read_rows(store)[0].at("failure"), "the worker took longer than timeout_s = 1");
-}
-
 // Somebody, or the kernel for want of memory: the point is tried once more before it counts as failed.
 TEST_F(Sweep, APointWhoseWorkerIsKilledIsTriedAgain) {
   const SweepSummary summary = run(spec("") + "[run.axes]\ndoes = ['killed', 'good']\n");
