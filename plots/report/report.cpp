@@ -157,8 +157,10 @@ void put(std::string& out, const Gallery& gallery) {
       "<div class=\"gallery\" style=\"grid-template-columns: repeat(auto-fill, minmax(min(100%, {}px), 1fr))\">\n",
       gallery.least_width_px);
   for (const ReportImage& image : gallery.images) {
-    out += fmt::format("<figure>\n<a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\"{2}></a>\n<figcaption>", url(image.path),
-                       escape(image.alt), image.pixels ? " class=\"pixels\"" : "");
+    const bool small = !image.thumbnail.empty();
+    out += fmt::format("<figure>\n<a href=\"{}\"><img src=\"{}\" alt=\"{}\"{}{}></a>\n<figcaption>", url(image.path),
+                       url(small ? image.thumbnail : image.path), escape(image.alt),
+                       image.pixels ? " class=\"pixels\"" : "", small ? " loading=\"lazy\"" : "");
     if (!image.title.empty()) out += fmt::format("<strong>{}</strong> ", escape(image.title));
     out += escape(image.caption) + "\n";
     out += "</figcaption>\n";
@@ -211,6 +213,7 @@ std::vector<std::string> linked_files(const Report& report) {
       } else if (const auto* gallery = std::get_if<Gallery>(&block)) {
         for (const ReportImage& image : gallery->images) {
           add(image.path);
+          if (!image.thumbnail.empty()) add(image.thumbnail);
           for (const FileLink& file : image.files)
             add(file.path);
         }

@@ -50,7 +50,8 @@ struct ReportImage {
   std::string caption{};
   std::vector<FileLink> files{};
   std::vector<CommandLine> commands{};
-  bool pixels = false;  ///< enlarged pixels stay sharp
+  bool pixels = false;      ///< enlarged pixels stay sharp
+  std::string thumbnail{};  ///< a small file that is shown in its place, and leads to it; empty: itself
 };
 
 /// Images side by side, as many in a row as fit.

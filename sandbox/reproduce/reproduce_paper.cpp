@@ -19,6 +19,7 @@
 #include "sandbox/arguments.hpp"
 #include "sandbox/reproduce/reproduce_report.hpp"
 #include "sandbox/status.hpp"
+#include "sweeps/spec/clock.hpp"
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/rows.hpp"
@@ -73,13 +74,16 @@ void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder
                        .words = words,
                        .store = (folder / (spec.name + ".db")).string(),
                        .summary = {},
-                       .rows = {}};
+                       .rows = {},
+                       .kept = {}};
     sweeps::RunOptions run;
     if (options.device) run.devices = {*options.device};
     run.references = folder / "references";  // one paper's sweeps look at the same scenes
-    sweep.summary = sweeps::run_sweep(spec, sweep.store, run);
+    const sweeps::Plan plan = sweeps::make_plan(spec);
+    sweep.summary = sweeps::run_sweep(spec, plan, sweep.store, run);
     if (sweep.summary.interrupted) throw RuntimeError("interrupted; the same command goes on where this one stopped");
     sweep.rows = sweeps::read_rows(sweep.store);
+    sweep.kept = kept_pictures(plan, sweep.store, folder / "thumbnails" / spec.name);
     outcome.sweeps.push_back(std::move(sweep));
   }
 }

@@ -368,6 +368,24 @@ void add_paper(const PaperOutcome& outcome, bool alone, Report& report) {
     report.sections.push_back(std::move(section));
   }
 
+  ReportSection kept{id + "-kept", prefix + "Pictures that the sweeps kept", {}};
+  for (const SweepOutcome& sweep : outcome.sweeps) {
+    Gallery small{.images = {}, .least_width_px = 160};
+    const std::string beside = outcome.folder + "/" + sweep.name;
+    for (const KeptPicture& picture : sweep.kept) {
+      small.images.push_back({.path = fmt::format("{}.db.pictures/{}", beside, picture.picture.filename().string()),
+                              .alt = picture.text,
+                              .caption = picture.text,
+                              .commands = {{"Draw it again", picture.repeat}},
+                              .thumbnail = fmt::format("{}/thumbnails/{}/{}", outcome.folder, sweep.name,
+                                                       picture.thumbnail.filename().string())});
+    }
+    if (small.images.empty()) continue;
+    kept.blocks.emplace_back(Heading{sweep.title});
+    kept.blocks.emplace_back(std::move(small));
+  }
+  if (!kept.blocks.empty()) report.sections.push_back(std::move(kept));
+
   ReportSection trouble{id + "-points", prefix + "Failed and unconverged points", {}};
   ReportTable table = trouble_table(outcome);
   if (table.rows.size() > 1) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plots/report/report.hpp"
+#include "sandbox/reproduce/kept_pictures.hpp"
 #include "sandbox/reproduce/reproduce_pictures.hpp"
 #include "sweeps/papers/paper.hpp"
 #include "sweeps/tables/tables.hpp"
@@ -21,6 +22,7 @@ struct SweepOutcome {
   std::string store;  ///< path as a user would type it
   sweeps::SweepSummary summary;
   std::vector<nlohmann::json> rows;
+  std::vector<KeptPicture> kept;
   /// Points with `status` failed, and with `timing` unconverged, whoever measured them.
   std::size_t failed() const;
   std::size_t unconverged() const;

@@ -126,7 +126,8 @@ class WrittenReport : public test::FolderTest {
     ReportSection second{"pictures", "Pictures", {}};
     ReportImage image{.path = "pictures/a#1 50%.png", .alt = "\"quoted\"", .title = "(a)", .caption = "M < N"};
     image.files = {{"EXR", "pictures/a.exr"}};
-    second.blocks.emplace_back(Gallery{{image, image}, 200});
+    ReportImage small{.path = "kept/big.exr", .alt = "kept", .thumbnail = "kept/small.png"};
+    second.blocks.emplace_back(Gallery{{image, small}, 200});
     report.sections = {first, second};
     return report;
   }
@@ -174,7 +175,8 @@ TEST_F(WrittenReport, LinksLeadToTheFilesAndNowhereElse) {
       files.insert(link);
     }
   }
-  EXPECT_EQ(files, (std::set<std::string>{"pictures/a#1 50%.png", "pictures/a.exr", "tables/table 1.csv"}));
+  EXPECT_EQ(files, (std::set<std::string>{"pictures/a#1 50%.png", "pictures/a.exr", "tables/table 1.csv",
+                                          "kept/big.exr", "kept/small.png"}));
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page must work without a network";
   EXPECT_EQ(html.find("<script"), std::string::npos);
 }

@@ -30,6 +30,7 @@ name = "hulls"
 techniques = ["sampling_hulls"]
 scenes = ["SCENE"]
 sizes = ["64x48"]
+keep = "exr"
 [run.axes]
 hulls = [1, 2, 4, 8]
 [run.fixed]
@@ -157,9 +158,19 @@ TEST_F(ReproducePaper, AFileOfOnesOwnFromItsSweepToItsPage) {
   const std::string page = read_file(out / "index.html");
   for (const char* words :
        {"Hulls of mine", "Error of so many hulls", "7 to 9", "Error over points", "figures/error.csv", "A box of fog",
-        "(a)", "As few points as there can be.", "hulls 1, samples 1", "32×24 pixels", "a corner",
-        "the same forward pass, shadow maps included", "The reference is traced"})
+        "Pictures that the sweeps kept", "(a)", "As few points as there can be.", "hulls 1, samples 1", "32×24 pixels",
+        "a corner", "the same forward pass, shadow maps included", "The reference is traced"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
+
+  // The sweep keeps its pictures.
+  std::size_t thumbnails = 0;
+  for (const auto& file : std::filesystem::directory_iterator(out / "mine" / "thumbnails" / "mine_preview")) {
+    const std::string name = file.path().filename().string();
+    EXPECT_NE(page.find("mine/thumbnails/mine_preview/" + name), std::string::npos);
+    EXPECT_NE(page.find("mine/mine_preview.db.pictures/" + file.path().stem().string() + ".exr"), std::string::npos);
+    ++thumbnails;
+  }
+  EXPECT_EQ(thumbnails, 2U);
 
   for (const json& picture : reproduce().at("pictures"))
     EXPECT_TRUE(picture.at("kept").get<bool>());
