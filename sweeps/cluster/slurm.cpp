@@ -59,7 +59,8 @@ std::string shard_script(const SlurmOptions& o, bool timed) {
   text += "set -uo pipefail\n" + names(o);
   text += fmt::format("shard=$SLURM_ARRAY_TASK_ID/{}\nkept=$folder/shards/{}-$SLURM_ARRAY_TASK_ID.db\nkind={}\n",
                       o.shards, job, timed ? "timed" : "untimed");
-  return text + R"(
+  return text + R"(rm -f "${kept%.db}.done"  # says to the merge that nothing is left of this shard
+
 # The store lies on the node's own disk while it grows, and is copied back whole.
 disk=$(mktemp -d "${SLURM_TMPDIR:-${TMPDIR:-/tmp}}/pellucid-XXXXXX") || exit 1
 store=$disk/sweep.db
@@ -72,7 +73,7 @@ keep() {
 }
 
 warned=no
-"$program" sweep run "$spec" --store "$store" --shard "$shard" --only "$kind" --references "$references" --quiet &
+"$program" sweep run "$spec" --store "$store" --shard "$shard" --only "$kind" --references "$references" --quiet --json > "$disk/summary.json" &
 sweep=$!
 trap 'warned=yes; kill -USR1 "$sweep"' USR1  # the time is nearly up: end when the point in work is done
 trap 'kill -TERM "$sweep"' TERM              # preempted: end at once
@@ -86,7 +87,7 @@ while kill -0 "$sweep" 2>/dev/null; do  # a signal ends `wait` early
 done
 kill "$keeper" 2>/dev/null
 wait "$keeper" 2>/dev/null
-keep
+keep && grep -q '"left": 0,' "$disk/summary.json" && : > "${kept%.db}.done"
 rm -rf -- "$disk"
 if [ "$warned" = yes ] && [ "$status" -ne 0 ]; then
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
@@ -95,9 +96,38 @@ exit "$status"
 )";
 }
 
+/// The arrays that measure; a sweep may have points of one kind only.
+std::vector<std::string> measuring(const SlurmOptions& o) {
+  std::vector<std::string> arrays;
+  if (o.untimed) arrays.emplace_back("quality");
+  if (o.timed) arrays.emplace_back("timing");
+  return arrays;
+}
+
 std::string merge_script(const SlurmOptions& o) {
+  const std::vector<std::string> arrays = measuring(o);
   return heading(o, "merge", false, false) +
-         "# Joins the shards, whatever became of single tasks.\nset -euo pipefail\n" + names(o) + R"(shopt -s nullglob
+         "# Joins the shards, whatever became of single tasks, and tells which are not done.\nset -euo pipefail\n" +
+         names(o) + fmt::format("arrays=\"{}\"\ntasks={}\n", fmt::join(arrays, " "), o.shards) + R"(
+# A task that was requeued when it had ended runs again, though this job has waited for all.
+cd "$folder"
+numbers=()
+for array in $arrays; do numbers+=($(awk -v array="$array" '$1 == array {print $2}' jobs)); done
+at_work=$(IFS=,; squeue --noheader --array --format=%i --jobs="${numbers[*]}" 2>/dev/null | xargs) || true
+if [ -n "$at_work" ]; then
+  echo "these tasks are at work again: $at_work; the merge waits for them once more"
+  again=$(IFS=:; sbatch --parsable --dependency="afterany:${numbers[*]}" merge.sbatch)
+  sed -i "s/^merge .*/merge ${again%%;*}/" jobs
+  exit 0
+fi
+
+missing=
+for array in $arrays; do
+  for ((task = 1; task <= tasks; ++task)); do
+    [ -e "shards/$array-$task.done" ] || missing="$missing $array-$task"
+  done
+done
+shopt -s nullglob
 shards=("$folder"/shards/*.db)
 if [ "${#shards[@]}" -eq 0 ]; then
   echo "no shard has left a store" >&2
@@ -106,6 +136,10 @@ fi
 "$program" sweep merge "$folder/all.db" "${shards[@]}"
 "$program" sweep status "$folder/all.db" | tee "$folder/status.txt"
 "$program" results "$folder/all.db" > "$folder/results.csv"
+if [ -n "$missing" ]; then
+  echo "these tasks have not said that they are done, so that points may be missing:$missing" | tee -a "$folder/status.txt" >&2
+  exit 1
+fi
 )";
 }
 
@@ -115,7 +149,7 @@ std::string submit_script(const SlurmOptions& o) {
   text += "submit() { id=$(sbatch --parsable \"$@\"); echo \"${id%%;*}\"; }\n";
   std::string after;  // the shards go on without references if need be: they trace what is missing
   std::string shards;
-  text += ": > jobs\n";
+  text += ": > jobs\nrm -f shards/*.done\n";
   const auto job = [&](const std::string& name, const std::string& dependency) {
     text += fmt::format("{0}=$(submit {1}{0}.sbatch)\necho \"{0} ${0}\" >> jobs\n", name, dependency);
   };
@@ -123,8 +157,7 @@ std::string submit_script(const SlurmOptions& o) {
     job("references", "");
     after = "--dependency=afterany:$references ";
   }
-  for (const auto& [name, wanted] : {std::pair("quality", o.untimed), std::pair("timing", o.timed)}) {
-    if (!wanted) continue;
+  for (const std::string& name : measuring(o)) {
     job(name, after);
     shards += fmt::format(":${}", name);
   }

@@ -127,13 +127,23 @@ export PELLUCID_KEEP_S=1
 "$program" sweep slurm s.toml -o out --program "$program" --shards 3 --at-once 2 --partition main || fail "not submitted"
 timing=$(awk '$1 == "timing" {print $2}' out/jobs)
 
-# A timing task is killed as soon as one runs, with its batch script and all: it must go on after a requeue.
+# A timing task is killed as soon as one runs, with its batch script and all: it must go on after a requeue. One more is requeued
+# when all have ended and the merge is about to start: that must wait for it.
+merge=$(awk '$1 == "merge" {print $2}' out/jobs)
+scontrol hold "$merge"
 killed=no
+late=no
 for _ in $(seq 600); do
   task=$(squeue --noheader --array --jobs="$timing" --states=RUNNING --format=%i 2>/dev/null | head -n 1)
   if [[ -n $task && $killed == no ]]; then
     sleep 1
     scontrol requeue "$task" && killed=$task
+  fi
+  # Slurm lets a requeued task wait for two minutes.
+  for task in $killed $late; do [[ $task == no ]] || scontrol update JobId="$task" StartTime=now 2>/dev/null; done
+  if [[ $late == no && $(find out/shards -name 'timing-*.done' | wc -l) -eq 3 && -z $(squeue --noheader --jobs="$timing" --format=%i 2>/dev/null) ]]; then
+    scontrol requeue "${timing}_3" && late=${timing}_3
+    scontrol release "$merge"
   fi
   [[ -s out/results.csv ]] && break
   sleep 0.3
@@ -141,9 +151,12 @@ done
 "$program" sweep status out
 [[ -s out/results.csv ]] || fail "there are no results"
 [[ $killed != no ]] || fail "no task was caught running"
+[[ $late != no ]] || fail "no task was requeued at its end"
+grep -q "at work again: $late" out/logs/merge-"$merge".log || fail "the merge did not wait for task $late"
 rows=$(tail -n +2 out/results.csv | wc -l)
 [[ $rows -eq 18 ]] || fail "$rows rows instead of 18 (task $killed was requeued)"
 grep -q ',ok,' out/results.csv || fail "no row is ok"
 [[ $(grep -c ',failed,' out/results.csv) -eq 0 ]] || fail "rows have failed"
 [[ $(find out/references -name '*.exr' | wc -l) -eq 1 ]] || fail "the reference was not traced once"
-echo "18 rows; task $killed was killed half-way and requeued"
+[[ $(find out/shards -name '*.done' | wc -l) -eq 6 ]] || fail "not all tasks say that they are done"
+echo "18 rows; task $killed was killed half-way and requeued, task $late at its end"

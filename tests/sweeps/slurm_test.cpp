@@ -59,6 +59,57 @@ TEST(Slurm, TimingHasItsNodesToItselfAndQualityDoesNot) {
   EXPECT_TRUE(has(scripts.at("submit.sh"), "--dependency=afterany:$references timing.sbatch"));
 }
 
+/// The merge of a folder, run by a shell with stand-ins for Slurm's programs and for this one.
+class SlurmMerge : public testing::Test {
+ protected:
+  SlurmMerge() {
+    SlurmOptions o = options(folder / "out");
+    o.shards = 2;
+    o.untimed = false;
+    o.program = (folder / "bin/pellucid").string();
+    write_slurm_scripts(o);
+    program("pellucid", "echo \"$1 $2\" >> " + told.string());
+    program("sbatch", "echo sbatch \"$@\" >> " + told.string() + "; echo 77");
+    program("squeue", "");
+    folder.write("out/jobs", "timing 12\nmerge 13\n");
+    for (const char* shard : {"1", "2"})
+      folder.write(std::string("out/shards/timing-") + shard + ".db", "rows");
+    folder.write("out/shards/timing-1.done", "");
+  }
+  void program(const std::string& name, const std::string& does) {
+    folder.write("bin/" + name, "#!/bin/sh\n" + does + "\n");
+    std::filesystem::permissions(folder / "bin" / name, std::filesystem::perms::owner_all);
+  }
+  /// Its exit status.
+  int merge() {
+    const std::string script = (folder / "out/merge.sbatch").string();
+    const int status = std::system(("PATH='" + (folder / "bin").string() + "':$PATH bash '" + script + "' > '" +
+                                    (folder / "words").string() + "' 2>&1")
+                                       .c_str());
+    return WEXITSTATUS(status);
+  }
+  std::string words() const { return pellucid::test::read_file(folder / "words"); }
+
+  pellucid::test::TemporaryFolder folder;
+  std::filesystem::path told = folder / "told";
+};
+
+TEST_F(SlurmMerge, JoinsAllAndNamesTheTasksThatAreNotDone) {
+  EXPECT_EQ(merge(), 1);
+  EXPECT_TRUE(has(words(), "points may be missing: timing-2\n")) << words();
+  EXPECT_TRUE(has(pellucid::test::read_file(told), "sweep merge")) << "one lost task does not sink the rest";
+  folder.write("out/shards/timing-2.done", "");
+  EXPECT_EQ(merge(), 0);
+}
+
+TEST_F(SlurmMerge, WaitsAgainForATaskThatWasRequeuedAtItsEnd) {
+  program("squeue", "echo 12_2");
+  EXPECT_EQ(merge(), 0);
+  EXPECT_TRUE(has(words(), "at work again: 12_2; ")) << words();
+  EXPECT_EQ(pellucid::test::read_file(told), "sbatch --parsable --dependency=afterany:12 merge.sbatch\n");
+  EXPECT_EQ(pellucid::test::read_file(folder / "out/jobs"), "timing 12\nmerge 77\n");
+}
+
 TEST(Slurm, LeavesOutWhatIsNotNeeded) {
   SlurmOptions o = options("/shared/out");
   o.untimed = o.metrics = false;
