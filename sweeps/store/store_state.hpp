@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -29,6 +30,9 @@ struct Store::State {
   Database database;
   ResultsView view{database};
   bool inside = false;  // of all_or_nothing()
+  bool shared = false;  // with other machines
+  bool syncing = true;
+  std::chrono::steady_clock::time_point synced{};
 
   State(const std::filesystem::path& p, Access access)
       : path(p),
@@ -39,7 +43,7 @@ struct Store::State {
       present_as_current(database);
       return;
     }
-    const bool shared = on_network_file_system(path);
+    shared = on_network_file_system(path);
     if (shared) database.run("PRAGMA locking_mode = EXCLUSIVE;");  // before anything is read
     const bool empty =
         database.integer("SELECT count(*) FROM sqlite_master") == 0 && database.integer("PRAGMA application_id") == 0;
@@ -53,11 +57,23 @@ struct Store::State {
     }
   }
 
+  /// Waits for the disk once a second at most: the log's order is kept, so that a killed process loses nothing and a
+  /// power cut that second. Small points would spend their time waiting.
+  void choose_sync() {
+    const auto now = std::chrono::steady_clock::now();
+    const bool due = shared || now - synced >= std::chrono::seconds(1);
+    if (due) synced = now;
+    if (due == syncing) return;
+    syncing = due;
+    database.run(due ? "PRAGMA synchronous = FULL;" : "PRAGMA synchronous = NORMAL;");
+  }
+
   /// Runs `f` in a transaction of its own, or in the one under way.
   template <class F>
   void commit(const F& f) {
     lock->check();
     if (inside) return f();
+    choose_sync();
     Transaction transaction(database);
     f();
     transaction.commit();
