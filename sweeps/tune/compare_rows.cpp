@@ -219,9 +219,10 @@ RowComparison compare_rows(const std::vector<json>& a, const std::vector<json>& 
   // Šidák: n intervals at this confidence hold together with 1 − alpha. Each median takes half of what may go wrong.
   const double miss = -std::expm1(std::log1p(-options.alpha) / static_cast<double>(timed));
   result.confidence = 1 - miss;
-  if (baselines_a.size() >= kManyBaselines && baselines_b.size() >= kManyBaselines)
+  if (options.between_runs && baselines_a.size() >= kManyBaselines && baselines_b.size() >= kManyBaselines)
     result.between_runs = std::sqrt(variance_of_logs(baselines_a) + variance_of_logs(baselines_b));
-  if (logs.size() >= kManyPoints) result.between_runs = std::max(result.between_runs, robust_deviation(logs));
+  if (options.between_runs && logs.size() >= kManyPoints)
+    result.between_runs = std::max(result.between_runs, robust_deviation(logs));
   const double reach = normal_reach(miss);
 
   const std::vector<std::string> shown = varying(in_a, parameters);

@@ -30,8 +30,9 @@ struct ComparedPoint {
 };
 
 struct CompareOptions {
-  double alpha = 0.05;      ///< chance that any of the points is called different where none is
-  double tolerance = 0.02;  ///< a change beyond this is a regression; a ratio known to lie within it is "same"
+  double alpha = 0.05;       ///< chance that any of the points is called different where none is
+  double tolerance = 0.02;   ///< a change beyond this is a regression; a ratio known to lie within it is "same"
+  bool between_runs = true;  ///< intervals are widened by how much runs of the same code differ
   /// Errors to judge quality by; empty: every metric that both rows have. Less is better, but for psnr and ssim.
   std::vector<std::string> metrics;
 };

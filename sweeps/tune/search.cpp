@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sweeps/tune/surrogate.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-/// Expected improvement, as a share of the cost, below which nothing promises more.
-constexpr double kSettled = 1e-3;
-/// The noise of measured costs and errors, in their logarithms.
-constexpr double kCostNoise = 0.02;
+/// Expected improvement, as a share of the cost, below which nothing promises more. The models are sure of themselves
+/// too soon, and the renders are allowed.
+constexpr double kSettled = 1e-6;
+/// The noise of measured costs and errors, in their logarithms. That of costs is a busy machine's; on a quiet one it
+/// costs a few settings more, since neighbours are told apart later.
+constexpr double kCostNoise = 0.05;
 constexpr double kErrorNoise = 0.005;
 
 double normal_below(double x) {
@@ -57,7 +60,17 @@ class Search {
       take(*next);
     }
     if (std::all_of(tried_.begin(), tried_.end(), [](bool t) { return t; })) result_.settled = true;
-    result_.best = best();
+    std::vector<std::pair<double, std::size_t>> by_cost;
+    if (successes() > 0) {
+      const Surrogate cost = cost_model();
+      for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+        if (outcomes_[i] && acceptable(*outcomes_[i])) by_cost.emplace_back(cost.at(settings_[i]).mean, i);
+      }
+    }
+    std::sort(by_cost.begin(), by_cost.end());
+    for (const auto& [cost, setting] : by_cost)
+      result_.acceptable.push_back(setting);
+    if (!by_cost.empty()) result_.best = result_.acceptable.front();
     return result_;
   }
 
@@ -75,15 +88,6 @@ class Search {
   }
 
   bool acceptable(const Outcome& outcome) const { return outcome.error <= options_.bound; }
-
-  std::optional<std::size_t> best() const {
-    std::optional<std::size_t> found;
-    for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-      if (outcomes_[i] && acceptable(*outcomes_[i]) && (!found || outcomes_[i]->cost < outcomes_[*found]->cost))
-        found = i;
-    }
-    return found;
-  }
 
   /// The setting farthest from all that were tried; at first, the one nearest to the middle.
   std::optional<std::size_t> farthest() const {
@@ -106,20 +110,36 @@ class Search {
 
   double error_value(double error) const { return options_.errors_positive ? std::log(std::max(error, 1e-12)) : error; }
 
-  std::optional<std::size_t> most_promising() const {
+  /// Of a value of the outcomes, over the settings that have been measured.
+  Surrogate model(const std::function<double(const Outcome&)>& value, double noise) const {
     std::vector<std::vector<double>> places;
-    std::vector<double> costs;
-    std::vector<double> errors;
+    std::vector<double> values;
     for (std::size_t i = 0; i < settings_.size(); ++i) {
       if (!outcomes_[i]) continue;
       places.push_back(settings_[i]);
-      costs.push_back(std::log(std::max(outcomes_[i]->cost, 1e-12)));
-      errors.push_back(error_value(outcomes_[i]->error));
+      values.push_back(value(*outcomes_[i]));
     }
-    const Surrogate cost(places, costs, kCostNoise);
-    const Surrogate error(places, errors, kErrorNoise);
-    const std::optional<std::size_t> so_far = best();
-    const double limit = so_far ? std::log(std::max(outcomes_[*so_far]->cost, 1e-12)) : 0;
+    return {std::move(places), std::move(values), noise};
+  }
+  Surrogate cost_model() const {
+    return model([](const Outcome& o) { return std::log(std::max(o.cost, 1e-12)); }, kCostNoise);
+  }
+
+  /// The least cost that an acceptable setting seems to have, in its logarithm: not the luckiest measurement.
+  std::optional<double> least_cost(const Surrogate& cost) const {
+    std::optional<double> least;
+    for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+      if (outcomes_[i] && acceptable(*outcomes_[i]))
+        least = std::min(least.value_or(1e300), cost.at(settings_[i]).mean);
+    }
+    return least;
+  }
+
+  std::optional<std::size_t> most_promising() const {
+    const Surrogate cost = cost_model();
+    const Surrogate error = model([this](const Outcome& o) { return error_value(o.error); }, kErrorNoise);
+    const std::optional<double> so_far = least_cost(cost);
+    const double limit = so_far.value_or(0);
     std::optional<std::size_t> found;
     double largest = so_far ? kSettled : 0;
     for (std::size_t i = 0; i < settings_.size(); ++i) {

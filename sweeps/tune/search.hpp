@@ -22,9 +22,10 @@ struct SearchOptions {
 };
 
 struct SearchResult {
-  std::optional<std::size_t> best;    ///< the cheapest acceptable setting that was measured
-  std::vector<std::size_t> measured;  ///< in order
-  bool settled = false;               ///< the search ended because nothing promised more, not for want of budget
+  std::optional<std::size_t> best;      ///< the acceptable setting that seems cheapest, of those measured
+  std::vector<std::size_t> acceptable;  ///< all that were measured, by the cost that they seem to have
+  std::vector<std::size_t> measured;    ///< in order
+  bool settled = false;                 ///< the search ended because nothing promised more, not for want of budget
 };
 
 /// Looks for the cheapest of `settings` (coordinates of about [0, 1], similar ones near each other) whose error stays

@@ -14,6 +14,7 @@
 
 #include "algorithms/parameters.hpp"
 #include "gl/error.hpp"
+#include "sweeps/tune/median_interval.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kAtLeast = 6;
+constexpr std::size_t kFinalsAtLeast = 2;
 
 double field(const json& row, const std::string& name) {
   const auto found = row.find(name);
@@ -119,27 +121,85 @@ std::optional<Outcome> outcome_of(const json& row, const TuneOptions& options) {
   return outcome;
 }
 
-std::vector<TuneAnswer> tune(const Plan& plan, const TuneOptions& options,
-                             const std::function<const json*(std::size_t)>& row_of,
-                             const std::function<void(std::size_t)>& measure) {
+std::vector<Finalist> rank_finalists(const std::vector<std::size_t>& points,
+                                     const std::vector<std::vector<double>>& round_ms) {
+  std::vector<Finalist> result;
+  std::vector<std::size_t> timed;  // of `points`
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!round_ms[i].empty()) timed.push_back(i);
+  }
+  if (timed.empty()) return result;
+  // The logarithm of each time over the round's mean: what a round has in common falls out.
+  std::vector<std::vector<double>> relative(points.size());
+  for (std::size_t round = 0; round < round_ms[timed.front()].size(); ++round) {
+    double mean = 0;
+    for (const std::size_t i : timed)
+      mean += std::log(round_ms[i][round]) / static_cast<double>(timed.size());
+    for (const std::size_t i : timed)
+      relative[i].push_back(std::log(round_ms[i][round]) - mean);
+  }
+  const auto median_of = [](std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return quantile(values, 0.5);
+  };
+  const std::size_t best = *std::min_element(timed.begin(), timed.end(), [&](std::size_t a, std::size_t b) {
+    return median_of(relative[a]) < median_of(relative[b]);
+  });
+  for (const std::size_t i : timed) {
+    std::vector<double> ratios;
+    for (std::size_t round = 0; round < relative[i].size(); ++round)
+      ratios.push_back(std::exp(relative[i][round] - relative[best][round]));
+    const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+    result.push_back({points[i], median_of(ratios), median_interval(ratios, 0.95).value_or(Interval{*least, *most})});
+  }
+  std::stable_sort(result.begin(), result.end(), [&](const Finalist& a, const Finalist& b) {
+    const bool a_best = a.point == points[best];
+    const bool b_best = b.point == points[best];
+    return a_best != b_best ? a_best : a.ratio < b.ratio;
+  });
+  return result;
+}
+
+namespace {
+
+/// Acceptable settings that cost at most this factor more than the cheapest may be the cheapest in truth.
+constexpr double kFinalFactor = 1.5;
+
+/// The settings to compare in turns, by their places in the group.
+std::vector<std::size_t> choose_finalists(const SearchResult& found, const std::vector<std::optional<Outcome>>& known,
+                                          std::size_t most) {
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : found.acceptable) {
+    const bool near = known[i]->cost <= kFinalFactor * known[found.acceptable.front()]->cost;
+    if (near && chosen.size() < most) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<TuneAnswer> tune(const Plan& plan, const TuneOptions& options, const TuneHooks& hooks) {
   std::vector<TuneAnswer> answers;
   for (TuneGroup& group : tune_groups(plan)) {
     TuneAnswer answer;
     std::vector<std::optional<Outcome>> known;
     for (const std::size_t point : group.points) {
-      const json* row = row_of(point);
+      const json* row = hooks.row_of(point);
       known.push_back(row != nullptr ? outcome_of(*row, options) : std::nullopt);
     }
     SearchOptions search;
     search.bound = options.at_least ? -options.bound : options.bound;
     search.errors_positive = !options.at_least;
-    search.budget = std::max(
+    const std::size_t renders = std::max(
         kAtLeast, static_cast<std::size_t>(std::floor(options.share * static_cast<double>(group.points.size()))));
+    // Times alone are compared in turns; a finalist's frames are about as many as those of a point.
+    const std::size_t for_finals = options.cost == "frame_ms_median" ? std::max(kFinalsAtLeast, renders / 4) : 0;
+    search.budget = renders - for_finals;
     const std::vector<std::optional<Outcome>> before = known;
     const SearchResult found =
         search_cheapest(coordinates(plan, group), search, before, [&](std::size_t i) -> std::optional<Outcome> {
-          measure(group.points[i]);
-          const json* row = row_of(group.points[i]);
+          hooks.measure(group.points[i]);
+          const json* row = hooks.row_of(group.points[i]);
           known[i] = row != nullptr ? outcome_of(*row, options) : std::nullopt;
           return known[i];
         });
@@ -148,12 +208,20 @@ std::vector<TuneAnswer> tune(const Plan& plan, const TuneOptions& options,
       answer.measured.push_back(group.points[i]);
     for (const std::size_t i : front(known))
       answer.front.push_back(group.points[i]);
-    if (found.best) {
-      answer.best = group.points[*found.best];
-      for (std::size_t i = 0; i < known.size(); ++i) {
-        const bool rival = i != *found.best && known[i] && known[i]->error <= search.bound &&
-                           known[i]->cost_low <= known[*found.best]->cost_high;
-        if (rival) answer.rivals.push_back(group.points[i]);
+    if (found.best) answer.best = group.points[*found.best];
+    std::vector<std::size_t> finalists;
+    for (const std::size_t i : choose_finalists(found, known, for_finals))
+      finalists.push_back(group.points[i]);
+    if (finalists.size() > 1) answer.finalists = rank_finalists(finalists, hooks.time_in_turns(finalists, kTuneRounds));
+    if (!answer.finalists.empty()) {
+      answer.best = answer.finalists.front().point;
+      for (const Finalist& finalist : answer.finalists) {
+        if (finalist.point != *answer.best && finalist.range.low <= 1) answer.rivals.push_back(finalist.point);
+      }
+    } else if (found.best) {
+      for (const std::size_t i : found.acceptable) {
+        if (i != *found.best && known[i]->cost_low <= known[*found.best]->cost_high)
+          answer.rivals.push_back(group.points[i]);
       }
     }
     answer.outcomes = std::move(known);

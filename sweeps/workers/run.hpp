@@ -57,4 +57,9 @@ struct ReferencesSummary {
 /// Traces the references of all points into a folder that several sweeps may share, so that none of them does.
 ReferencesSummary trace_references(const Spec&, const Plan&, const std::filesystem::path& folder, const RunOptions&);
 
+/// Frame times of `points` in turns, `rounds` times, by one worker: the medians of `frames` frames each [ms], by point
+/// and round. Nothing is stored. Those of a point that cannot be timed are empty; all are when it is interrupted.
+std::vector<std::vector<double>> time_in_turns(const Spec&, const std::vector<const Point*>& points, int rounds,
+                                               int frames, const RunOptions&);
+
 }  // namespace pellucid::sweeps

@@ -33,7 +33,7 @@ struct CompareArguments {
   std::string a, b, device_name;
   std::vector<std::string> commits;
   CompareOptions options;
-  bool all = false, as_json = false;
+  bool all = false, as_json = false, to_baseline = false;
 };
 
 /// One side of a comparison.
@@ -43,6 +43,21 @@ struct Side {
   std::vector<std::string> parameters;
   std::vector<double> baselines;
 };
+
+/// Turns the rows' frame times into multiples of what the baseline took at that time.
+void divide_by_baseline(Side& side) {
+  for (json& row : side.rows) {
+    const auto drift = row.find("baseline_drift");
+    if (!row.contains("frame_ms_median")) continue;
+    if (drift == row.end() || !drift->is_number() || side.baselines.empty())
+      throw InputError(
+          fmt::format("{} has no baseline to compare with (`baseline = true` in a block of the spec)", side.name));
+    const double baseline_ms = side.baselines.front() * (1 + drift->get<double>());
+    row["frame_ms_median"] = row.at("frame_ms_median").get<double>() / baseline_ms;
+    for (json& sample : row.at("frame_ms_samples"))
+      sample = sample.get<double>() / baseline_ms;
+  }
+}
 
 Side read_side(const std::string& path, const std::string& commit, const std::string& device_name) {
   const Store store(path, Access::read);
@@ -87,18 +102,22 @@ json compared_json(const ComparedPoint& p) {
           {"regression", p.regression}};
 }
 
-int compare(const CompareArguments& arguments) {
+int compare(CompareArguments arguments) {
   const bool commits = !arguments.commits.empty();
   if (commits == !arguments.b.empty())
     throw InputError("compare two stores, A.db B.db, or two commits in one, A.db --commits OLD,NEW");
   if (commits && arguments.commits.size() != 2)
     throw InputError(fmt::format("--commits takes two, OLD,NEW, and {} are given", arguments.commits.size()));
-  const Side a = read_side(arguments.a, commits ? arguments.commits[0] : "", arguments.device_name);
-  const Side b =
-      read_side(commits ? arguments.a : arguments.b, commits ? arguments.commits[1] : "", arguments.device_name);
+  Side a = read_side(arguments.a, commits ? arguments.commits[0] : "", arguments.device_name);
+  Side b = read_side(commits ? arguments.a : arguments.b, commits ? arguments.commits[1] : "", arguments.device_name);
   std::vector<std::string> parameters = a.parameters;
   for (const std::string& name : b.parameters) {
     if (std::find(parameters.begin(), parameters.end(), name) == parameters.end()) parameters.push_back(name);
+  }
+  arguments.options.between_runs = !arguments.to_baseline;
+  if (arguments.to_baseline) {
+    divide_by_baseline(a);
+    divide_by_baseline(b);
   }
   const RowComparison result = compare_rows(a.rows, b.rows, parameters, a.baselines, b.baselines, arguments.options);
   if (result.points.empty()) throw InputError(fmt::format("{} and {} have no point in common", a.name, b.name));
@@ -143,6 +162,11 @@ int compare(const CompareArguments& arguments) {
         "intervals of each ratio hold with {:.4g} %, all together with {:.4g} %; runs of the same code differ by "
         "{:.2g} %\n",
         100 * result.confidence, 100 * (1 - arguments.options.alpha), 100 * result.between_runs);
+    const auto differ = std::count_if(result.points.begin(), result.points.end(), [&](const ComparedPoint& p) {
+      return p.range && std::abs(p.ratio - 1) > arguments.options.tolerance && (p.range->low > 1 || p.range->high < 1);
+    });
+    fmt::print("{} of {} points differ in time by more than {:g} % and beyond their intervals\n", differ,
+               result.points.size(), 100 * arguments.options.tolerance);
     if (result.only_in_a + result.only_in_b > 0)
       fmt::print("{} points are in the first alone, {} in the second\n", result.only_in_a, result.only_in_b);
   }
@@ -170,6 +194,8 @@ void add_compare_command(cli::App& sweep, std::vector<Command>& commands) {
       ->capture_default_str();
   app->add_option("-m,--metrics", arguments->options.metrics, "judge quality by these columns (default: all metrics)")
       ->delimiter(',');
+  app->add_flag("--to-baseline", arguments->to_baseline,
+                "compare times over the baseline's at that moment, by the intervals of the samples alone");
   app->add_flag("--all", arguments->all, "print every point, not only those that changed");
   app->add_flag("--json", arguments->as_json, "print JSON");
   app->footer(
@@ -210,6 +236,20 @@ std::string setting_text(const Plan& plan, std::size_t index, const Outcome& out
                      options.at_least ? -outcome.error : outcome.error);
 }
 
+/// Frames of a finalist in each round; seven rounds of them are about what a point takes at least.
+constexpr int kFramesInTurn = 5;
+
+json finalists_json(const Plan& plan, const std::vector<Finalist>& finalists) {
+  json items = json::array();
+  for (const Finalist& f : finalists) {
+    items.push_back({{"point", plan.points[f.point].id},
+                     {"ratio", f.ratio},
+                     {"ratio_ci95_low", f.range.low},
+                     {"ratio_ci95_high", f.range.high}});
+  }
+  return items;
+}
+
 int tune_command(TuneArguments arguments) {
   if (arguments.below.has_value() == arguments.at_least.has_value())
     throw InputError("give one bound: --below E, or --at-least Q for a quantity of which more is better");
@@ -241,6 +281,7 @@ int tune_command(TuneArguments arguments) {
   };
   bool interrupted = false;
   Plan part = plan;
+  part.baseline.reset();  // finalists are timed in turns instead
   const auto measure = [&](std::size_t index) {
     if (interrupted) return;
     part.order = {index};
@@ -249,7 +290,14 @@ int tune_command(TuneArguments arguments) {
     device = summary.device;
     read();
   };
-  const std::vector<TuneAnswer> answers = tune(plan, arguments.options, row_of, measure);
+  const auto in_turns = [&](const std::vector<std::size_t>& points, int rounds) {
+    if (interrupted) return std::vector<std::vector<double>>(points.size());
+    std::vector<const Point*> chosen;
+    for (const std::size_t index : points)
+      chosen.push_back(&plan.points[index]);
+    return time_in_turns(spec, chosen, rounds, kFramesInTurn, run);
+  };
+  const std::vector<TuneAnswer> answers = tune(plan, arguments.options, {row_of, measure, in_turns});
 
   json out = json::array();
   bool found_all = true;
@@ -281,6 +329,7 @@ int tune_command(TuneArguments arguments) {
            {"settled", answer.settled},
            {"best", answer.best ? setting_json(plan, *answer.best, outcome(*answer.best), arguments.options) : json()},
            {"within_its_interval", list(answer.rivals)},
+           {"finalists", finalists_json(plan, answer.finalists)},
            {"front", list(answer.front)},
            {"evidence", list(tried)}});
       continue;
@@ -294,6 +343,11 @@ int tune_command(TuneArguments arguments) {
     } else {
       fmt::print("  none of them keeps {} {} {:g}\n", arguments.options.quantity,
                  arguments.options.at_least ? "at or above" : "at or below", arguments.options.bound);
+    }
+    for (const Finalist& finalist : answer.finalists) {
+      fmt::print("  timed in turns  {:.3f} [{:.3f}, {:.3f}] of the best's time  {}\n", finalist.ratio,
+                 finalist.range.low, finalist.range.high,
+                 setting_text(plan, finalist.point, outcome(finalist.point), arguments.options));
     }
     for (const std::size_t index : answer.rivals)
       fmt::print("  as fast within the interval  {}\n", setting_text(plan, index, outcome(index), arguments.options));
@@ -322,8 +376,9 @@ void add_sweep_questions(cli::App& sweep, std::vector<Command>& commands) {
   app->add_option("--at-least", arguments->at_least, "the quantity's least acceptable value, for psnr or ssim");
   app->add_option("--cost", arguments->options.cost, "what is to be small: a column of the rows")
       ->capture_default_str();
-  app->add_option("--share", arguments->options.share,
-                  "the part of a scene's settings that may be measured (six in any case)")
+  app->add_option(
+         "--share", arguments->options.share,
+         "the part of a scene's settings that may be drawn (six in any case); a finalist that is timed again counts")
       ->check(cli::Range(0.0, 1.0))
       ->capture_default_str();
   app->add_option("--device", arguments->devices, "EGL device of the worker (pellucid devices)")->delimiter(',');
@@ -332,7 +387,8 @@ void add_sweep_questions(cli::App& sweep, std::vector<Command>& commands) {
   app->add_flag("--json", arguments->as_json, "print the answer, the front and the evidence as JSON");
   app->footer(
       "Example: pellucid sweep tune my.toml --store my.db --quantity flip_mean --below 0.02\n"
-      "Each scene, view and size is a question of its own. Status 1: a question has no acceptable setting.");
+      "Each scene, view and size is a question of its own. The settings that seem cheapest are timed again in turns, "
+      "so that\na busy machine does not decide. Status 1: a question has no acceptable setting.");
   commands.push_back({app, [arguments] { return tune_command(*arguments); }});
 }
 
