@@ -78,7 +78,7 @@ inline constexpr int kTuneRounds = 7;
 std::vector<Finalist> rank_finalists(const std::vector<std::size_t>& points,
                                      const std::vector<std::vector<double>>& round_ms);
 
-/// Answers each question of the plan. Of the renders allowed, a part goes into timing the finalists again.
+/// Answers each question of the plan. Timing the finalists again takes a part of the renders allowed.
 std::vector<TuneAnswer> tune(const Plan&, const TuneOptions&, const TuneHooks&);
 
 }  // namespace pellucid::sweeps

@@ -196,7 +196,7 @@ TEST_F(Adversity, AStoppedWorkerThatIsLetGoOnCostsNothing) {
   EXPECT_EQ(count(said, "note: the worker has been stopped by a signal"), 1U) << said;
 }
 
-/// What `f` throws when it runs without root's right to write everything; empty when it throws nothing.
+/// The message of what `f` throws when it runs without root's right to write everything; empty when it throws nothing.
 std::string as_anybody(const std::function<void()>& f) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) return "no pipe";
