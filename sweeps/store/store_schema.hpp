@@ -42,7 +42,7 @@ class ResultsView {
  private:
   void load();
   std::string definition() const;
-  /// Of a column; an object's member has that of the object and its own name.
+  /// That of a column; an object's member has that of the object and its own name.
   ColumnMeaning meaning(const std::string& name) const;
   void note(const std::string& name, const nlohmann::json& value);
   Database& database_;

@@ -110,7 +110,7 @@ class Search {
 
   double error_value(double error) const { return options_.errors_positive ? std::log(std::max(error, 1e-12)) : error; }
 
-  /// Of a value of the outcomes, over the settings that have been measured.
+  /// A model of a value of the outcomes, over the settings that have been measured.
   Surrogate model(const std::function<double(const Outcome&)>& value, double noise) const {
     std::vector<std::vector<double>> places;
     std::vector<double> values;

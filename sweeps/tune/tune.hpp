@@ -63,7 +63,7 @@ std::vector<std::vector<double>> coordinates(const Plan&, const TuneGroup&);
 /// fail has no such field, with the nearest name.
 std::optional<Outcome> outcome_of(const nlohmann::json& row, const TuneOptions&);
 
-/// What the search asks of its surroundings.
+/// The questions that the search asks of its surroundings.
 struct TuneHooks {
   std::function<const nlohmann::json*(std::size_t point)> row_of;  ///< the store's row, or null
   std::function<void(std::size_t point)> measure;                  ///< so that it has a row

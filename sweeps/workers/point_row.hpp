@@ -7,7 +7,7 @@
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/workers/worker_client.hpp"
 
-/// What the parent adds to a worker's answer, and says of it.
+/// The part of a row that the parent adds to a worker's answer, and what it says of a row.
 namespace pellucid::sweeps {
 
 /// "volume_slices fog_forest slices=64 720x540"

@@ -1,4 +1,4 @@
-// What befalls long sweeps: clocks that are set, machines that sleep, workers that are stopped, stores that cannot be
+// Mishaps of long sweeps: clocks that are set, machines that sleep, workers that are stopped, stores that cannot be
 // written.
 #include <array>
 #include <chrono>

@@ -1,4 +1,4 @@
-// What a store offers to programs that speak SQL.
+// The views that a store offers to programs that speak SQL.
 #include <cstddef>
 #include <filesystem>
 #include <string>
