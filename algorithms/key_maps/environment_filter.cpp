@@ -18,7 +18,7 @@
 namespace pellucid::scattering {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kReach = 3.7;     // widths beyond which a Gaussian is cut off: 0.1 % of it
 constexpr double kCells = 3;       // cells of the source map a width, at least, where the source has them
 constexpr int kGradientRows = 64;  // of a map made from a gradient
@@ -73,11 +73,11 @@ class Weights {
 glm::dvec3 gathered(const SphereMap& map, const glm::dvec3& direction, const Weights& weights, double reach) {
   const double polar = std::acos(std::clamp(direction.y, -1.0, 1.0)), sine = std::sin(polar);
   const double azimuth = std::atan2(direction.x, -direction.z);
-  const double cell = kPi / map.height();
+  const double cell = pi / map.height();
   const int first = std::max(0, static_cast<int>(std::floor((polar - reach) / cell)));
   const int last = std::min(map.height() - 1, static_cast<int>(std::ceil((polar + reach) / cell)));
-  const double columns_per_rad = map.width() / (2 * kPi);
-  const double middle = (azimuth + kPi) * columns_per_rad - 0.5;
+  const double columns_per_rad = map.width() / (2 * pi);
+  const double middle = (azimuth + pi) * columns_per_rad - 0.5;
   glm::dvec3 sum(0.0);
   double total = 0;
   for (int y = first; y <= last; ++y) {
@@ -115,7 +115,7 @@ glm::dvec3 gathered(const SphereMap& map, const glm::dvec3& direction, const Wei
 
 // A flat Gaussian filter of constant width in both directions, which runs on across the poles.
 SphereMap flat_filtered(const SphereMap& map, double width) {
-  const double sigma = width * map.height() / kPi;
+  const double sigma = width * map.height() / pi;
   const int reach = static_cast<int>(std::ceil(kReach * sigma));
   std::vector<double> kernel;
   double total = 0;
@@ -170,14 +170,14 @@ FilterSource::FilterSource(FilterSource&&) noexcept = default;
 
 // The coarsest map whose cells are small beside the width; a finer one is made where even the source's are not.
 const SphereMap& FilterSource::map_for(double width, SphereMap& finer) const {
-  const auto fits = [&](const SphereMap& map, double cells) { return kPi / map.height() * cells <= width; };
+  const auto fits = [&](const SphereMap& map, double cells) { return pi / map.height() * cells <= width; };
   for (std::size_t i = maps_.size(); i-- > 0;) {
     if (fits(maps_[i], kCells)) return maps_[i];
   }
   if (fits(maps_.front(), 1)) return maps_.front();
   // By whole powers of two, so that every source cell keeps its share.
   int height = maps_.front().height();
-  while (kPi / height > width && height < 8192)
+  while (pi / height > width && height < 8192)
     height *= 2;
   finer = maps_.front().resampled(height);
   return finer;
@@ -186,7 +186,7 @@ const SphereMap& FilterSource::map_for(double width, SphereMap& finer) const {
 KeyMap FilterSource::direct(int size, double width) const {
   SphereMap finer;
   const SphereMap& map = map_for(width, finer);
-  const double reach = std::min(kReach * width, kPi);
+  const double reach = std::min(kReach * width, pi);
   const Weights weights(width, reach);
   KeyMap out = empty_map(size, width);
   for_texels(size, [&](std::size_t at, const glm::dvec3& d) { write(out, at, gathered(map, d, weights, reach)); });
@@ -226,7 +226,7 @@ KeyMap FilterSource::filtered(SphereFilter filter, int size, double width) const
 }
 
 KeyMap FilterSource::mean(int size) const {
-  KeyMap out = empty_map(size, kPi);
+  KeyMap out = empty_map(size, pi);
   for_texels(size, [&](std::size_t at, const glm::dvec3&) { write(out, at, mean_); });
   return out;
 }

@@ -11,7 +11,7 @@
 namespace pellucid::scattering {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRinging = 0.05;  // of the mean: what a negative pixel may hold
 
 }  // namespace
@@ -52,10 +52,10 @@ SphereMap::SphereMap(int width, int height)
     : width_(width), height_(height), rgb_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
   for (int y = 0; y < height; ++y) {
     sines_.push_back(std::sin(polar(y)));
-    areas_.push_back(2 * kPi / width * (std::cos(kPi * y / height) - std::cos(kPi * (y + 1) / height)));
+    areas_.push_back(2 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height)));
   }
   for (int x = 0; x < width; ++x) {
-    const double azimuth = 2 * kPi * (x + 0.5) / width - kPi;
+    const double azimuth = 2 * pi * (x + 0.5) / width - pi;
     column_cosines_.push_back(std::cos(azimuth));
     column_sines_.push_back(std::sin(azimuth));
   }
@@ -102,8 +102,8 @@ glm::dvec3 SphereMap::across_poles(int x, int y) const {
 }
 
 glm::dvec3 SphereMap::at(const glm::dvec3& direction) const {
-  const double u = 0.5 + std::atan2(direction.x, -direction.z) / (2 * kPi);
-  const double v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / kPi;
+  const double u = 0.5 + std::atan2(direction.x, -direction.z) / (2 * pi);
+  const double v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / pi;
   const double px = u * width_ - 0.5, py = v * height_ - 0.5;
   const int x = static_cast<int>(std::floor(px)), y = static_cast<int>(std::floor(py));
   return glm::mix(glm::mix(across_poles(x, y), across_poles(x + 1, y), px - x),
@@ -118,7 +118,7 @@ glm::dvec3 SphereMap::mean() const {
       row += across_poles(x, y);
     sum += area(y) * row;
   }
-  return sum / (4 * kPi);
+  return sum / (4 * pi);
 }
 
 SphereMap SphereMap::halved() const {

@@ -10,11 +10,11 @@
 namespace pellucid::scattering {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 // From far below what any map resolves to nearly uniform.
 constexpr double kNarrowest = 2e-4, kWidest = 4.0;
 constexpr int kHalvings = 12;
-constexpr double kStep = 0.5 * kPi / 180;
+constexpr double kStep = 0.5 * pi / 180;
 constexpr int kWidths = 48;  // of the first look, equally far apart in their logarithm
 
 // The integral of a Gaussian in the angle, between a and b and but for the normalisation. On a step this short the sine
@@ -35,7 +35,7 @@ class Curve {
     double cosine = 1, within = light.transmittance - apart;
     std::vector<double> flux(light.cosine.size());
     for (std::size_t i = 0; i < flux.size(); ++i) {
-      flux[i] = 2 * kPi * light.weight[i] * light.cosine[i] * light.transmission[i];
+      flux[i] = 2 * pi * light.weight[i] * light.cosine[i] * light.transmission[i];
       within -= flux[i];
     }
     angles_.push_back(0);
@@ -62,13 +62,13 @@ class Curve {
     total_ = light.transmittance - apart;
     constexpr int kBehind = 16;  // no light is wanted there, and all models put some
     for (int i = 1; i <= kBehind; ++i) {
-      angles_.push_back(kPi / 2 * (1 + static_cast<double>(i) / kBehind));
+      angles_.push_back(pi / 2 * (1 + static_cast<double>(i) / kBehind));
       wanted_.push_back(total_);
     }
     for (std::size_t i = 0; i < angles_.size(); ++i) {
       const double before = i > 0 ? angles_[i - 1] : angles_[i];
       const double after = i + 1 < angles_.size() ? angles_[i + 1] : angles_[i];
-      share_.push_back(0.5 * (after - before) / kPi);
+      share_.push_back(0.5 * (after - before) / pi);
     }
   }
 
@@ -199,7 +199,7 @@ double gaussian_within(double width, double angle) {
   double within = 0, all = 0;
   for (int i = 0; i < kSteps; ++i) {
     within += step_energy(width, angle * i / kSteps, angle * (i + 1) / kSteps);
-    all += step_energy(width, kPi * i / kSteps, kPi * (i + 1) / kSteps);
+    all += step_energy(width, pi * i / kSteps, pi * (i + 1) / kSteps);
   }
   return within / all;
 }

@@ -4,7 +4,7 @@ namespace pellucid::translucent_relief {
 namespace {
 
 const std::string kFullscreen = "algorithms/shaders/fullscreen.vert.glsl";
-const std::string kFolder = "algorithms/translucent_relief/";
+const std::string kBloomFolder = "algorithms/translucent_relief/";
 
 }  // namespace
 
@@ -16,9 +16,9 @@ void Bloom::fit(int width, int height) {
   first_target_ = gl::Framebuffer("bloom", {&first_});
   second_target_ = gl::Framebuffer("blurred bloom", {&second_});
   if (bright_) return;
-  bright_ = gl::Program("bright light", {kFullscreen, kFolder + "bright.frag.glsl"});
-  blur_ = gl::Program("blurred light", {kFullscreen, kFolder + "blur.frag.glsl"});
-  add_ = gl::Program("bloom", {kFullscreen, kFolder + "bloom.frag.glsl"});
+  bright_ = gl::Program("bright light", {kFullscreen, kBloomFolder + "bright.frag.glsl"});
+  blur_ = gl::Program("blurred light", {kFullscreen, kBloomFolder + "blur.frag.glsl"});
+  add_ = gl::Program("bloom", {kFullscreen, kBloomFolder + "bloom.frag.glsl"});
   fullscreen_ = gl::VertexArray("bloom fullscreen");
 }
 

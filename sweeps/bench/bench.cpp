@@ -23,7 +23,6 @@
 namespace pellucid::sweeps {
 namespace {
 
-constexpr std::size_t kWarmUpFrames = 64;
 constexpr double kWarmUpSeconds = 10;
 
 double block_median(const std::vector<double>& samples, std::size_t first, std::size_t count) {

@@ -24,7 +24,7 @@
 namespace pellucid::sweeps {
 namespace {
 
-constexpr int kWarmUpFrames = 3;
+constexpr int kVtkWarmUpFrames = 3;
 constexpr int kHalvings = 16;
 constexpr int kBisections = 6;
 constexpr double kLongestFrame_s = 10;
@@ -162,8 +162,8 @@ BenchVtk bench_against_vtk(const TechniqueInfo& technique, const BenchRequest& r
         with.draw(draw, into);
       with.drain();
     };
-    block(context, clock, ours, kWarmUpFrames, nullptr);
-    block(other, vtk_clock, theirs, kWarmUpFrames, nullptr);
+    block(context, clock, ours, kVtkWarmUpFrames, nullptr);
+    block(other, vtk_clock, theirs, kVtkWarmUpFrames, nullptr);
     for (int frame = 0; frame < request.frames; frame += BenchResult::kBlockFrames) {
       block(context, clock, ours, BenchResult::kBlockFrames, &method_ms);
       block(other, vtk_clock, theirs, BenchResult::kBlockFrames, &vtk_ms);

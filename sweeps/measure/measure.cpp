@@ -31,7 +31,6 @@
 namespace pellucid::sweeps {
 namespace {
 
-constexpr std::size_t kWarmUpFrames = 64;
 constexpr double kWarmUpShare = 0.25;  ///< of max_seconds
 constexpr int kPassFrames = 5;
 

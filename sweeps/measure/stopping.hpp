@@ -47,6 +47,9 @@ struct TimingSummary {
 };
 TimingSummary summarise(std::span<const double> samples_ms);
 
+/// The most frames that a subject is drawn before its times count.
+inline constexpr std::size_t kWarmUpFrames = 64;
+
 /// Warm-up ends when the median of the last kWindow frames differs from that of the kWindow before by at most
 /// kTolerance of it, or at the cap.
 class WarmUp {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kWindow = SsimReference::kWindow, kRadius = SsimReference::kRadius;
 
-std::size_t size(int n) {
+std::size_t as_size(int n) {
   return static_cast<std::size_t>(n);
 }
 
@@ -27,7 +27,7 @@ std::array<double, kWindow> window() {
   std::array<double, kWindow> w;
   double sum = 0;
   for (int k = -kRadius; k <= kRadius; ++k)
-    sum += w[size(k + kRadius)] = std::exp(-k * k / (2 * kSigma * kSigma));
+    sum += w[as_size(k + kRadius)] = std::exp(-k * k / (2 * kSigma * kSigma));
   for (double& v : w)
     v /= sum;
   return w;
@@ -41,7 +41,7 @@ void for_rows(int height, const auto& body) {
 }
 
 std::vector<double> luma(const Image& image, bool display_encoded) {
-  std::vector<double> out(size(image.width) * size(image.height));
+  std::vector<double> out(as_size(image.width) * as_size(image.height));
   for_rows(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       double rgb[3];
@@ -49,7 +49,7 @@ std::vector<double> luma(const Image& image, bool display_encoded) {
         const double v = channel(image, image.at(x, y), c);
         rgb[c] = display_encoded ? v : linear_to_srgb(std::clamp(v, 0.0, 1.0));
       }
-      out[size(y) * size(image.width) + size(x)] = rec709(rgb[0], rgb[1], rgb[2]);
+      out[as_size(y) * as_size(image.width) + as_size(x)] = rec709(rgb[0], rgb[1], rgb[2]);
     }
   });
   return out;
@@ -59,21 +59,21 @@ std::vector<double> luma(const Image& image, bool display_encoded) {
 std::vector<double> window_means(int width, int height, const auto& value) {
   static const std::array<double, kWindow> w = window();
   const int inner_width = width - 2 * kRadius, inner_height = height - 2 * kRadius;
-  std::vector<double> rows(size(inner_width) * size(height)), out(size(inner_width) * size(inner_height));
+  std::vector<double> rows(as_size(inner_width) * as_size(height)), out(as_size(inner_width) * as_size(inner_height));
   for_rows(height, [&](int y) {
-    std::vector<double> line(size(width));
+    std::vector<double> line(as_size(width));
     for (std::size_t x = 0; x < line.size(); ++x)
-      line[x] = value(size(y) * size(width) + x);
-    double* sum = rows.data() + size(y) * size(inner_width);
+      line[x] = value(as_size(y) * as_size(width) + x);
+    double* sum = rows.data() + as_size(y) * as_size(inner_width);
     for (std::size_t k = 0; k < w.size(); ++k)
-      for (std::size_t x = 0; x < size(inner_width); ++x)
+      for (std::size_t x = 0; x < as_size(inner_width); ++x)
         sum[x] += w[k] * line[x + k];
   });
   for_rows(inner_height, [&](int y) {
-    double* sum = out.data() + size(y) * size(inner_width);
+    double* sum = out.data() + as_size(y) * as_size(inner_width);
     for (std::size_t k = 0; k < w.size(); ++k) {
-      const double* line = rows.data() + (size(y) + k) * size(inner_width);
-      for (std::size_t x = 0; x < size(inner_width); ++x)
+      const double* line = rows.data() + (as_size(y) + k) * as_size(inner_width);
+      for (std::size_t x = 0; x < as_size(inner_width); ++x)
         sum[x] += w[k] * line[x];
     }
   });

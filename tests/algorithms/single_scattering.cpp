@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kExtinction = 0.4;
 constexpr glm::dvec3 kAlbedo{0.75, 0.5, 0.25};
 constexpr glm::dvec3 kHalf{2.0, 1.0, 1.5};  // of the fog's box, about the origin
@@ -75,7 +75,7 @@ glm::dvec3 scattered(const Light& light, const Camera& camera, int x, int y) {
   if (end <= begin) return glm::dvec3(0.0);
   const glm::dvec3 colour(light.intensity);
   const double clear = std::exp(-kExtinction * (end - begin));
-  if (light.kind == LightKind::directional) return kAlbedo * colour * ((1 - clear) / (4 * kPi));
+  if (light.kind == LightKind::directional) return kAlbedo * colour * ((1 - clear) / (4 * pi));
 
   const glm::dvec3 place(light.position), direction(light.direction);
   const double nearest = glm::dot(place - eye, ray), h = glm::length(eye + nearest * ray - place);
@@ -93,7 +93,7 @@ glm::dvec3 scattered(const Light& light, const Camera& camera, int x, int y) {
     return share * kExtinction * std::exp(-kExtinction * (t - begin)) / h;
   };
   const auto angle = [&](double t) { return std::atan2(t - nearest, h); };
-  return kAlbedo * colour * (integral(f, angle(begin), angle(end)) / (4 * kPi));
+  return kAlbedo * colour * (integral(f, angle(begin), angle(end)) / (4 * pi));
 }
 
 struct Case {

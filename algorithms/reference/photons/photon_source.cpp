@@ -9,7 +9,7 @@
 namespace pellucid {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 }  // namespace
 
@@ -53,14 +53,14 @@ PhotonSource::PhotonSource(const Illumination::Emitter& light, const Sphere& obj
 }
 
 PhotonSource::Photon PhotonSource::at(const glm::dvec2& place) const {
-  const double angle = 2.0 * kPi * place.y;
+  const double angle = 2.0 * pi * place.y;
   const glm::dvec3 outwards = std::cos(angle) * right_ + std::sin(angle) * up_;
   Photon photon;
   if (light_.kind == LightKind::directional) {
     const double r = object_.radius;
     photon.origin = object_.center - start_m_ * axis_ + r * std::sqrt(place.x) * outwards;
     photon.direction = axis_;
-    photon.power = light_.intensity * (kPi * r * r);
+    photon.power = light_.intensity * (pi * r * r);
     return photon;
   }
   // Archimedes: evenly in the height on the unit sphere is evenly in solid angle.
@@ -71,7 +71,7 @@ PhotonSource::Photon PhotonSource::at(const glm::dvec2& place) const {
   double spot = 1.0;
   if (light_.kind == LightKind::spot)
     spot = glm::smoothstep(light_.cos_outer, light_.cos_inner, glm::dot(photon.direction, light_.direction));
-  photon.power = light_.intensity * (spot * 2.0 * kPi * cap_);
+  photon.power = light_.intensity * (spot * 2.0 * pi * cap_);
   return photon;
 }
 

@@ -40,7 +40,7 @@ std::string_view tail(const std::string& channel) {
 }
 
 /// A flat part's channels by layer; subsampled ones are not read.
-struct Part {
+struct ExrPart {
   int number = 0;
   std::string name;
   Group main;  ///< R, G, B and perhaps A, or Y
@@ -48,8 +48,8 @@ struct Part {
   std::vector<std::string> subsampled;
 };
 
-Part group_channels(const Imf::Header& header, int number) {
-  Part part;
+ExrPart group_channels(const Imf::Header& header, int number) {
+  ExrPart part;
   part.number = number;
   part.name = header.hasName() && !header.name().empty() ? header.name() : fmt::format("part{}", number);
   std::set<std::string> plain;
@@ -86,9 +86,9 @@ bool is_color(const Group& group) {
 }
 
 /// The channels of a file that has no picture: "Z (part 'depth'), N.X".
-std::string list_channels(const std::vector<Part>& parts) {
+std::string list_channels(const std::vector<ExrPart>& parts) {
   std::vector<std::string> shown;
-  for (const Part& part : parts) {
+  for (const ExrPart& part : parts) {
     std::vector<std::string> names = part.subsampled;
     for (const auto& [layer, group] : part.layers)
       names.insert(names.end(), group.begin(), group.end());
@@ -100,7 +100,7 @@ std::string list_channels(const std::vector<Part>& parts) {
 
 /// Which part and group is the picture: plain R, G, B before plain Y before the only layer of R, G and B. That layer
 /// becomes the part's main group.
-std::size_t choose_main(const std::filesystem::path& path, std::vector<Part>& parts, PictureFile& result) {
+std::size_t choose_main(const std::filesystem::path& path, std::vector<ExrPart>& parts, PictureFile& result) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (parts[i].main.size() >= 3) return i;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -213,7 +213,7 @@ std::vector<Image> read_groups(const std::filesystem::path& path, Imf::MultiPart
   return images;
 }
 
-void read_part(const std::filesystem::path& path, Imf::MultiPartInputFile& file, const Part& part, bool is_main,
+void read_part(const std::filesystem::path& path, Imf::MultiPartInputFile& file, const ExrPart& part, bool is_main,
                const LayerFilter& wanted, PictureFile& result) {
   const Imf::Header& header = file.header(part.number);
   read_attributes(header, result.attributes);
@@ -243,7 +243,7 @@ void read_part(const std::filesystem::path& path, Imf::MultiPartInputFile& file,
 PictureFile read_parts(const std::filesystem::path& path, const LayerFilter& wanted) {
   PictureFile result;
   Imf::MultiPartInputFile file(path.c_str());
-  std::vector<Part> parts;
+  std::vector<ExrPart> parts;
   for (int number = 0; number < file.parts(); ++number) {
     const Imf::Header& header = file.header(number);
     if (header.hasType() && Imf::isDeepData(header.type())) continue;

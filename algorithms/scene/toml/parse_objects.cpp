@@ -22,7 +22,6 @@ namespace pellucid {
 namespace {
 
 constexpr NumberRange kSegments{3, 2048};
-constexpr NumberRange kRefractiveIndex{0.2, 5};
 constexpr NumberRange kAnisotropy{-scattering::kMaxAnisotropy, scattering::kMaxAnisotropy};
 constexpr NumberRange kMetalIndex{0.01, 20};
 constexpr NumberRange kExtinctionIndex{0, 50};

@@ -15,7 +15,6 @@
 namespace pellucid {
 namespace {
 
-constexpr NumberRange kRefractiveIndex{0.2, 5};
 constexpr NumberRange kHeight{-1e3, 0};
 constexpr NumberRange kTexels{1, 2048};
 constexpr NumberRange kSeed{0, 4294967295.0};

@@ -57,6 +57,7 @@ struct NumberRange {
 inline constexpr NumberRange kCoordinate{-1e6, 1e6};
 inline constexpr NumberRange kLength{1e-6, 1e6};
 inline constexpr NumberRange kShare{0, 1};
+inline constexpr NumberRange kRefractiveIndex{0.2, 5};
 inline constexpr NumberRange kRadiance{0, 1e9};
 inline constexpr NumberRange kAngleDeg{-36000, 36000};
 

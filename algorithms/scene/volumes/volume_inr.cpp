@@ -31,7 +31,7 @@ struct InrHeader {
   }
 };
 
-InrHeader read_header(const fs::path& path) {
+InrHeader read_inr_header(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text;
   while (text.size() < 64 * kBlock) {
@@ -53,7 +53,7 @@ InrHeader read_header(const fs::path& path) {
   fail_volume(path, "its header has no end");
 }
 
-VoxelType type_of(const fs::path& path, const InrHeader& header) {
+VoxelType inr_type(const fs::path& path, const InrHeader& header) {
   const std::string kind = header.text("TYPE");
   std::string bits = header.text("PIXSIZE");
   if (bits.ends_with(" bits")) bits.resize(bits.size() - 5);
@@ -76,7 +76,7 @@ bool is_swapped(const fs::path& path, const InrHeader& header) {
 }  // namespace
 
 VolumeFile load_inr(const fs::path& path) {
-  const InrHeader text = read_header(path);
+  const InrHeader text = read_inr_header(path);
   VolumeHeader header;
   for (int c = 0; c < 3; ++c) {
     const std::string letter(1, "XYZ"[c]);
@@ -84,7 +84,7 @@ VolumeFile load_inr(const fs::path& path) {
     header.spacing[c] = header_number(path, "V" + letter, text.text("V" + letter, "1"));
   }
   header.components = header_size(path, "VDIM", text.text("VDIM", "1"));
-  const VoxelType type = type_of(path, text);
+  const VoxelType type = inr_type(path, text);
   const bool swapped = is_swapped(path, text);
   return read_voxels(path, header, {.file = path, .offset = text.bytes, .type = type, .swapped = swapped});
 }

@@ -95,7 +95,7 @@ void read_field(const fs::path& path, const std::string& line, int number, NrrdH
     fail_volume(path, fmt::format("its header states '{}' twice", shown));
 }
 
-NrrdHeader read_header(const fs::path& path) {
+NrrdHeader read_nrrd_header(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   NrrdHeader header;
   std::string line;
@@ -210,7 +210,7 @@ VolumeHeader shape_of(const fs::path& path, const NrrdHeader& text) {
   return header;
 }
 
-VoxelType type_of(const fs::path& path, const std::string& name) {
+VoxelType nrrd_type(const fs::path& path, const std::string& name) {
   struct Named {
     VoxelKind kind;
     int bits;
@@ -247,10 +247,10 @@ bool is_swapped(const fs::path& path, const NrrdHeader& header, const VoxelType&
 }  // namespace
 
 VolumeFile load_nrrd(const fs::path& path) {
-  const NrrdHeader text = read_header(path);
+  const NrrdHeader text = read_nrrd_header(path);
   const VolumeHeader header = shape_of(path, text);
   VoxelBytes place;
-  place.type = type_of(path, text.text("type"));
+  place.type = nrrd_type(path, text.text("type"));
   place.swapped = is_swapped(path, text, place.type);
   const std::string encoding = lower(text.text("encoding"));
   place.packed = encoding == "gzip" || encoding == "gz";

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Fog of extinction 0.4 over x in [−2, 6], y and z in [−1, 3], seen along +x through its middle.
 Scene fog_scene(const glm::ivec3& size = glm::ivec3(1)) {
@@ -59,7 +59,7 @@ glm::dvec3 airlight(const Scene& scene, const glm::dvec3& lamp, const std::vecto
         },
         angles);
   }
-  return glm::dvec3(scene.volume->albedo) * sum / (4.0 * kPi);
+  return glm::dvec3(scene.volume->albedo) * sum / (4.0 * pi);
 }
 
 TEST(ReferenceScattering, PointLightInConstantFogIsTheAirlightIntegral) {
@@ -126,7 +126,7 @@ TEST(ReferenceScattering, DirectionalShadowsHaveAClosedForm) {
   const double lit = 1.0 - std::exp(-extinction) + std::exp(-3 * extinction) - std::exp(-8 * extinction);
   const glm::dvec3 expected =
       glm::dvec3(scene.volume->albedo) * (glm::dvec3(scene.ambient) * (1.0 - std::exp(-8 * extinction)) +
-                                          glm::dvec3(scene.lights[0].intensity) * (lit / (4 * kPi)));
+                                          glm::dvec3(scene.lights[0].intensity) * (lit / (4 * pi)));
   const Reference result = seen_along_x(scene, 1.0);
   expect_near(result, expected);
   EXPECT_LT(result.step_error_max, 1e-7) << "no steps, only the image's rounding";
@@ -151,7 +151,7 @@ TEST(ReferenceScattering, ThinShadowsAreNotMissed) {
     const double t = 0.1 + 0.04 * i;
     taken += std::exp(-extinction * (t - 0.0005)) - std::exp(-extinction * (t + 0.0005));
   }
-  const glm::dvec3 full = glm::dvec3(scene.volume->albedo) * glm::dvec3(scene.lights[0].intensity) / (4 * kPi);
+  const glm::dvec3 full = glm::dvec3(scene.volume->albedo) * glm::dvec3(scene.lights[0].intensity) / (4 * pi);
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(with[c], full[c] * (1 - std::exp(-8 * extinction) - taken), 1e-5 * full[c]);
 }
@@ -174,7 +174,7 @@ TEST(ReferenceScattering, ALightOnTheRayIsFinite) {
   const double extinction = 0.5 * widened(0.8F);
   const double sum = quadrature(
       [&](double t) { return extinction * std::exp(-extinction * t) / ((t + 3.0) * (t + 3.0)); }, {0.0, 8.0});
-  expect_near(seen_along_x(scene), glm::dvec3(scene.volume->albedo) * sum / (4.0 * kPi));
+  expect_near(seen_along_x(scene), glm::dvec3(scene.volume->albedo) * sum / (4.0 * pi));
   scene.lights[0].position = {1, 0, 0};  // in the fog, on the ray: without bound
   const Reference boundless = one_pixel(scene, {-5, 0, 0}, {6, 0, 0});
   EXPECT_TRUE(std::isfinite(radiance(boundless).x));
@@ -212,7 +212,7 @@ TEST(ReferenceScattering, AVolumeInALightsSpaceScattersWhatItsVoxelsStore) {
   };
   const glm::dvec3 albedo(scene.volume->albedo);
   const glm::dvec3 ambient = glm::dvec3(scene.ambient) * (1.0 - std::exp(-8.0 * extinction));
-  const glm::dvec3 intensity = glm::dvec3(scene.lights[1].intensity) / (4.0 * kPi);
+  const glm::dvec3 intensity = glm::dvec3(scene.lights[1].intensity) / (4.0 * pi);
   // The plate's shadow lies from t = 2.5 to 6.5; the cone's edge is in the voxels, not in the light.
   expect_near(seen_along_x(scene), albedo * (ambient + intensity * (scattered(0.0, 2.5) + scattered(6.5, 8.0))));
   scene.lights[1].casts_shadow = false;
@@ -284,7 +284,7 @@ TEST(ReferenceScattering, TheStatedErrorBoundsTheTrueOneWithEverythingAtOnce) {
     for (std::size_t l = 0; l < 3; ++l) {
       const bool hidden = std::any_of(dark[l].begin(), dark[l].end(),
                                       [&](const Interval& part) { return t > part.begin && t < part.end; });
-      if (!hidden) incident += light.incidence(l, o + t * d).irradiance / (4.0 * kPi);
+      if (!hidden) incident += light.incidence(l, o + t * d).irradiance / (4.0 * pi);
     }
     marched += at.albedo * incident * (at.extinction * std::exp(-depth - 0.5 * at.extinction * dt) * dt);
     depth += at.extinction * dt;

@@ -14,7 +14,7 @@
 namespace pellucid {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Scene scene_of(Mesh mesh, const glm::mat4& to_world, const glm::vec3& albedo = glm::vec3(0.5F)) {
   Scene scene;
@@ -52,7 +52,7 @@ TEST(ReferenceSurfaces, SphereDistancesLieWithinTheFacets) {
   const SurfaceLayer layer = trace_surfaces(scene, camera);
   const glm::dvec3 centre(0.3F, -0.2F, -4.0F);
   // A facet lies at most the sagitta below the sphere, in both directions together.
-  const double sagitta = 2.0 * 1.5 * (1.0 - std::cos(kPi / segments));
+  const double sagitta = 2.0 * 1.5 * (1.0 - std::cos(pi / segments));
   int hits = 0, misses = 0;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 48; ++x) {
@@ -120,7 +120,7 @@ TEST(ReferenceSurfaces, NormalsOfStretchedInstancesStayPerpendicular) {
       const glm::dvec3 p = glm::dvec3(0, 6, 0) + t * camera.ray_direction(x + 0.5, y + 0.5);
       const glm::dvec3 n = glm::normalize(p / (glm::dvec3(axes) * glm::dvec3(axes)));
       if (n.y < 0.2) continue;
-      EXPECT_NEAR(static_cast<double>(layer.radiance.at(x, y)[0]), n.y / kPi, 2e-3);
+      EXPECT_NEAR(static_cast<double>(layer.radiance.at(x, y)[0]), n.y / pi, 2e-3);
       ++hits;
     }
   }
@@ -165,9 +165,9 @@ TEST(ReferenceShading, MultipliesAlbedoVertexColourAndTintAndAddsEmission) {
   const Camera camera = camera_at({0, 3, 0}, {0, 0, 0}, 1, {0, 0, -1});
   const SurfaceLayer layer = trace_surfaces(scene, camera);
   const float* pixel = layer.radiance.at(0, 0);
-  EXPECT_NEAR(pixel[0], 0.25 * (0.25 + 2.0 / kPi), 1e-6);
-  EXPECT_NEAR(pixel[1], 0.125 * (0.5 + 2.0 / kPi), 1e-6);
-  EXPECT_NEAR(pixel[2], 2.0 + 0.375 * (1.0 + 2.0 / kPi), 1e-6);
+  EXPECT_NEAR(pixel[0], 0.25 * (0.25 + 2.0 / pi), 1e-6);
+  EXPECT_NEAR(pixel[1], 0.125 * (0.5 + 2.0 / pi), 1e-6);
+  EXPECT_NEAR(pixel[2], 2.0 + 0.375 * (1.0 + 2.0 / pi), 1e-6);
 }
 
 TEST(ReferenceShading, SurfacesHaveTwoSides) {
@@ -177,10 +177,10 @@ TEST(ReferenceShading, SurfacesHaveTwoSides) {
   const auto seen_from = [&](float y) {
     return trace_surfaces(scene, camera_at({0, y, 0}, {0, 0, 0}, 1, {0, 0, -1})).radiance.at(0, 0)[0];
   };
-  EXPECT_NEAR(seen_from(3.0F), 0.125 + 1.0 / kPi, 1e-6);
+  EXPECT_NEAR(seen_from(3.0F), 0.125 + 1.0 / pi, 1e-6);
   EXPECT_NEAR(seen_from(-3.0F), 0.125, 1e-6);  // the lit side is the other one
   scene.lights[0].direction = {0, 1, 0};
-  EXPECT_NEAR(seen_from(-3.0F), 0.125 + 1.0 / kPi, 1e-6);
+  EXPECT_NEAR(seen_from(-3.0F), 0.125 + 1.0 / pi, 1e-6);
 }
 
 TEST(ReferenceShading, PointLightFallsWithTheSquareOfTheDistance) {
@@ -193,9 +193,9 @@ TEST(ReferenceShading, PointLightFallsWithTheSquareOfTheDistance) {
   EXPECT_NEAR(far.irradiance.z, 0.125, 1e-12);
   EXPECT_NEAR(glm::distance(near.to_light, glm::dvec3(0, 1, 0)), 0.0, 1e-12);
   // On a plane below it: I cos³θ / h² / π.
-  const double expected = 8.0 * std::pow(std::cos(kPi / 4), 3) / 4.0 / kPi;
+  const double expected = 8.0 * std::pow(std::cos(pi / 4), 3) / 4.0 / pi;
   EXPECT_NEAR(light.surface_radiance({3, 0, 3}, {0, 1, 0}, glm::dvec3(1), glm::dvec3(0)).x, expected, 1e-12);
-  EXPECT_NEAR(light.medium_radiance({1, 0, 3}, glm::dvec3(0.5), glm::dvec3(0.25)).x, 0.25 + 0.5 * 2.0 / (4 * kPi),
+  EXPECT_NEAR(light.medium_radiance({1, 0, 3}, glm::dvec3(0.5), glm::dvec3(0.25)).x, 0.25 + 0.5 * 2.0 / (4 * pi),
               1e-12);
   EXPECT_FALSE(light.uniform());
 }
@@ -232,7 +232,7 @@ TEST(ReferenceShading, DirectionalLightIsTheSameEverywhere) {
   const Illumination light(scene);
   EXPECT_TRUE(light.uniform());
   EXPECT_EQ(light.incidence(0, {0, 0, 0}).irradiance, light.incidence(0, {9, -3, 100}).irradiance);
-  EXPECT_NEAR(light.medium_radiance({7, 7, 7}, glm::dvec3(1), glm::dvec3(0)).y, 0.5 + 1.0 / kPi, 1e-12);
+  EXPECT_NEAR(light.medium_radiance({7, 7, 7}, glm::dvec3(1), glm::dvec3(0)).y, 0.5 + 1.0 / pi, 1e-12);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 namespace pellucid::scattering {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Environment constant(float value) {
   Environment e;

@@ -18,7 +18,7 @@
 namespace pellucid::scattering {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Slab, AgreesWithVanDeHulst) {
   // van de Hulst 1980 (references.bib: vandehulst1980), perpendicular incidence.
@@ -113,7 +113,7 @@ Counted count(const SlabMedium& medium, double depth, int photons, std::uint32_t
       const double s = (1 - g * g) / (1 - g + 2 * g * u);
       const double cosine = std::abs(g) < 1e-3 ? 2 * u - 1 : (1 + g * g - s * s) / (2 * g);
       const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-      const double turn = 2 * kPi * static_cast<double>(random.next());
+      const double turn = 2 * pi * static_cast<double>(random.next());
       const glm::dvec3 side = glm::normalize(
           glm::cross(direction, std::abs(direction.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
       direction = glm::normalize(cosine * direction +
@@ -122,7 +122,7 @@ Counted count(const SlabMedium& medium, double depth, int photons, std::uint32_t
     if (z < 0) out.reflected += weight;
     if (z > depth) {
       out.transmitted += weight;
-      if (direction.z > std::cos(kPi / 6)) out.ahead += weight;
+      if (direction.z > std::cos(pi / 6)) out.ahead += weight;
     }
   }
   out.reflected /= photons;
@@ -151,8 +151,8 @@ TEST(Slab, AgreesWithPhotonsAtTenPoints) {
     // The radiance by angle, summed as far as 30°, where one ordinate's bin is cut in proportion.
     double ahead = light.unscattered + light.near_forward, cosine = 1;
     for (std::size_t i = 0; i < light.cosine.size(); ++i) {
-      const double part = std::clamp((cosine - std::cos(kPi / 6)) / light.weight[i], 0.0, 1.0);
-      ahead += 2 * kPi * part * light.weight[i] * light.cosine[i] * light.transmission[i];
+      const double part = std::clamp((cosine - std::cos(pi / 6)) / light.weight[i], 0.0, 1.0);
+      ahead += 2 * pi * part * light.weight[i] * light.cosine[i] * light.transmission[i];
       cosine -= light.weight[i];
     }
     EXPECT_NEAR(ahead, counted.ahead, within(ahead) + 0.004) << p.anisotropy << " " << p.depth;

@@ -13,7 +13,7 @@
 namespace pellucid {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 glm::dvec3 corner(const Mesh& mesh, const glm::uvec3& triangle, int i) {
   return glm::dvec3(mesh.positions[triangle[i]]);
@@ -101,8 +101,8 @@ TEST(ProceduralShapes, AreSoundAndClosed) {
 
 TEST(ProceduralShapes, SphereMatchesClosedForm) {
   const Mesh mesh = make_sphere(2.0F, 256);
-  EXPECT_NEAR(volume(mesh), 4.0 / 3.0 * kPi * 8.0, 0.02);
-  EXPECT_NEAR(area(mesh), 4.0 * kPi * 4.0, 0.02);
+  EXPECT_NEAR(volume(mesh), 4.0 / 3.0 * pi * 8.0, 0.02);
+  EXPECT_NEAR(area(mesh), 4.0 * pi * 4.0, 0.02);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     EXPECT_LT(glm::distance(mesh.positions[i], 2.0F * mesh.normals[i]), 1e-5F);
   }
@@ -118,10 +118,10 @@ TEST(ProceduralShapes, BoxHasItsSizeAboutTheOrigin) {
 
 TEST(ProceduralShapes, CylinderAndConeMatchThePrismAndThePyramid) {
   const int n = 24;
-  const double base = 0.5 * n * std::sin(2.0 * kPi / n) * 0.4 * 0.4;
+  const double base = 0.5 * n * std::sin(2.0 * pi / n) * 0.4 * 0.4;
   EXPECT_NEAR(volume(make_cylinder(0.4F, 2.0F, n)), base * 2.0, 1e-6);
   EXPECT_NEAR(volume(make_cone(0.4F, 2.0F, n)), base * 2.0 / 3.0, 1e-6);
-  const double perimeter = 2.0 * n * std::sin(kPi / n) * 0.4;
+  const double perimeter = 2.0 * n * std::sin(pi / n) * 0.4;
   EXPECT_NEAR(area(make_cylinder(0.4F, 2.0F, n)), 2.0 * base + perimeter * 2.0, 1e-5);
 }
 
@@ -134,8 +134,8 @@ TEST(ProceduralShapes, ConeNormalsStandOnTheSlant) {
 
 TEST(ProceduralShapes, TorusMatchesPappus) {
   const Mesh mesh = make_torus(1.0F, 0.25F, 256);
-  EXPECT_NEAR(volume(mesh), 2.0 * kPi * kPi * 0.0625, 2e-3);
-  EXPECT_NEAR(area(mesh), 4.0 * kPi * kPi * 0.25, 5e-3);
+  EXPECT_NEAR(volume(mesh), 2.0 * pi * pi * 0.0625, 2e-3);
+  EXPECT_NEAR(area(mesh), 4.0 * pi * pi * 0.25, 5e-3);
 }
 
 TEST(ProceduralShapes, StarsAreSoundClosedAndAsLargeAsTheFormulaSays) {
@@ -145,7 +145,7 @@ TEST(ProceduralShapes, StarsAreSoundClosedAndAsLargeAsTheFormulaSays) {
     expect_closed(mesh);
     // r³/3 over all directions: odd powers of the cosine vanish.
     const double r = static_cast<double>(options.radius), a = static_cast<double>(options.amplitude);
-    EXPECT_NEAR(volume(mesh), r * r * r * kPi * (4.0 / 3.0 + 16.0 / 15.0 * a * a), 0.004 * r * r * r);
+    EXPECT_NEAR(volume(mesh), r * r * r * pi * (4.0 / 3.0 + 16.0 / 15.0 * a * a), 0.004 * r * r * r);
   }
   const Mesh ball = make_star({2.0F, 5, 0.0F}, 32);
   for (std::size_t i = 0; i < ball.positions.size(); ++i)

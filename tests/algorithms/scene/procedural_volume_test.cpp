@@ -76,7 +76,7 @@ TEST(ProceduralNoise, ARowEqualsItsPoints) {
   }
 }
 
-double sum(const std::vector<float>& values) {
+double total(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
@@ -95,7 +95,7 @@ TEST(ProceduralFog, FallsWithHeightAndStaysInRange) {
   const auto [low, high] = std::minmax_element(patchy.begin(), patchy.end());
   EXPECT_GE(*low, 0.0F);
   EXPECT_LE(*high, 1.0F);
-  EXPECT_NEAR(sum(patchy), 3161.8766, 0.05);
+  EXPECT_NEAR(total(patchy), 3161.8766, 0.05);
   EXPECT_EQ(patchy, make_fog_density(size, FogOptions{}));
   FogOptions other;
   other.seed = 2;
@@ -116,7 +116,7 @@ TEST(ProceduralBall, FillsItsShareOfTheBox) {
   for (const glm::ivec3 size : {glm::ivec3(32), glm::ivec3(40, 24, 16), glm::ivec3(1), glm::ivec3(2)}) {
     const auto ball = make_ball_density(size);
     const double voxels = static_cast<double>(size.x) * size.y * size.z;
-    EXPECT_NEAR(sum(ball) / voxels, std::numbers::pi / 6.0, size.x > 2 ? 3e-4 : 5e-3);
+    EXPECT_NEAR(total(ball) / voxels, std::numbers::pi / 6.0, size.x > 2 ? 3e-4 : 5e-3);
     for (const float v : ball)
       ASSERT_TRUE(v >= 0.0F && v <= 1.0F);
     for (std::size_t i = 0; i < ball.size(); ++i)

@@ -14,15 +14,15 @@
 namespace pellucid {
 namespace {
 
-constexpr std::string_view kSound = "title = \"t\"\n[views.front]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n";
+constexpr std::string_view kScene = "title = \"t\"\n[views.front]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n";
 
 class SceneMaterials : public test::FolderTest {
  protected:
   Scene load(std::string_view text) {
-    return load_scene(write("s.toml", std::string(kSound) + std::string(text)).string());
+    return load_scene(write("s.toml", std::string(kScene) + std::string(text)).string());
   }
   std::string error_of(std::string_view text) {
-    const std::string path = write("s.toml", std::string(kSound) + std::string(text)).string();
+    const std::string path = write("s.toml", std::string(kScene) + std::string(text)).string();
     const std::string message = test::message_of([&] { load_scene(path); });
     EXPECT_TRUE(message.starts_with(path + ":")) << message;
     return message.substr(std::min(message.size(), path.size() + 1));

@@ -18,18 +18,18 @@
 namespace pellucid {
 namespace {
 
-constexpr std::string_view kSound =
+constexpr std::string_view kReliefScene =
     "title = \"t\"\n[views.front]\neye = [0, 2, 2]\ntarget = [0, 0, 0]\n[materials.white]\nalbedo = 1\n"
     "[materials.mirror]\nkind = \"mirror\"\n[meshes.plane]\nshape = \"plane\"\n";
 
 class SceneReliefs : public test::FolderTest {
  protected:
   Scene load(std::string_view text) {
-    return load_scene(write("s.toml", std::string(kSound) + std::string(text)).string());
+    return load_scene(write("s.toml", std::string(kReliefScene) + std::string(text)).string());
   }
   /// Without file, line and column.
   std::string error_of(std::string_view text) {
-    const std::string path = write("s.toml", std::string(kSound) + std::string(text)).string();
+    const std::string path = write("s.toml", std::string(kReliefScene) + std::string(text)).string();
     const std::string message = test::message_of([&] { load_scene(path); });
     EXPECT_TRUE(message.starts_with(path + ":")) << message;
     std::size_t at = path.size();
