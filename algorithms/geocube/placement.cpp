@@ -10,7 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "algorithms/geocube/cubes.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {

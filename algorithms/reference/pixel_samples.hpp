@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 
 namespace pellucid {
 

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "algorithms/reference/box_tree.hpp"
-#include "algorithms/reference/media/interval.hpp"
+#include "algorithms/reference/interval.hpp"
 #include "algorithms/scene/scene.hpp"
 
 /// Where along a ray the opaque objects keep a light away, exactly. A ray and a light span a plane; the triangles that

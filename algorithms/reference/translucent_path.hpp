@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "algorithms/reference/ray_tree.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 
 /// Light in solids whose medium scatters, by unbiased random walks inside the exact meshes. A refracting interface
 /// leaves no way to connect a point inside with a light outside, so a walk ends where it leaves: in the environment, or

@@ -8,15 +8,9 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "algorithms/scene/toml/scene_source.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {
-
-Scene::Scene() = default;
-Scene::~Scene() = default;
-Scene::Scene(Scene&&) noexcept = default;
-Scene& Scene::operator=(Scene&&) noexcept = default;
 
 const View& Scene::find_view(std::string_view wanted) const {
   if (views.empty()) throw InputError(fmt::format("scene '{}' has no views", name));
@@ -30,19 +24,6 @@ const View& Scene::find_view(std::string_view wanted) const {
   throw InputError(fmt::format(
       "unknown view '{}' of scene '{}'; {}", wanted, name,
       near.empty() ? fmt::format("it has {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near)));
-}
-
-ParameterRef Scene::parameters() {
-  static const ParameterTable none;
-  return {source ? &source->table() : &none, this};
-}
-
-std::uint64_t Scene::revision() const {
-  return source ? source->revision() : 0;
-}
-
-std::string Scene::content_hash() const {
-  return source ? source->content_hash() : std::string();
 }
 
 glm::vec3 Volume::voxel_spacing_m() const {

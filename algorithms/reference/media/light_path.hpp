@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/reference/media/interval.hpp"
+#include "algorithms/reference/interval.hpp"
 #include "algorithms/reference/ray_shadows.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/scene/scene.hpp"

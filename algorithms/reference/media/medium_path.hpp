@@ -9,8 +9,8 @@
 
 #include <glm/glm.hpp>
 
+#include "algorithms/reference/interval.hpp"
 #include "algorithms/reference/media/cubic.hpp"
-#include "algorithms/reference/media/interval.hpp"
 #include "algorithms/scene/scene.hpp"
 
 /// The medium along a ray, exactly. Between eight voxel centres the density is trilinear in the position, so along a

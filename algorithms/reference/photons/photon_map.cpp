@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 
 namespace pellucid {
 namespace {

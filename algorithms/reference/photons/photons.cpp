@@ -14,8 +14,8 @@
 #include "algorithms/reference/geometry.hpp"
 #include "algorithms/reference/photons/photon_source.hpp"
 #include "algorithms/reference/ray_tree.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/bounds.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {

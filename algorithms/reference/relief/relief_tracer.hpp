@@ -9,8 +9,8 @@
 #include "algorithms/reference/relief/height_field.hpp"
 #include "algorithms/reference/shading.hpp"
 #include "algorithms/scene/meshes/tangents.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/scene.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 
 /// The look of a mesh that carries a relief, by exact hits: the optics and the shading of Timonen (references.bib:
 /// timonen), Algorithms 1 and 2.

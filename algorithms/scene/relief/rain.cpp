@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 
 namespace pellucid {
 namespace {

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/forest_trees.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "gl/error.hpp"
 

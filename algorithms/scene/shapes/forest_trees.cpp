@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "algorithms/scene/shapes/tree_parts.hpp"
 

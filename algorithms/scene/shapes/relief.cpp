@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 
 namespace pellucid {

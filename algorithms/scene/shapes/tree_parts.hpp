@@ -5,8 +5,8 @@
 
 #include <glm/glm.hpp>
 
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/scene.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 
 /// The parts that trees are made of. They are appended to a mesh with vertex colours.
 ///

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "algorithms/scene/volumes/volume_rows.hpp"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/geocube/search.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "tests/algorithms/geocube/geocube_solids.hpp"
 
 namespace pellucid::geocube {

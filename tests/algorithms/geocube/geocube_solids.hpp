@@ -8,8 +8,8 @@
 
 #include <glm/glm.hpp>
 
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/scene.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 
 /// Closed meshes with known answers.

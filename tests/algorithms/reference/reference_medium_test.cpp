@@ -13,7 +13,7 @@
 #include "algorithms/reference/media/medium_path.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "tests/algorithms/reference/reference_scenes.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "algorithms/reference/photons/photon_map.hpp"
 #include "algorithms/reference/photons/photons.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "gl/error.hpp"
 #include "tests/algorithms/reference/optical_scenes.hpp"
 

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/reference/reference.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/scene.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 
 /// The tests of the reference share this: small scenes, and ways of their own to the same numbers.
 namespace pellucid::test {

@@ -12,7 +12,7 @@
 #include "algorithms/reference/ray_shadows.hpp"
 #include "algorithms/reference/reference.hpp"
 #include "algorithms/reference/shading.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "tests/algorithms/reference/reference_scenes.hpp"
 

@@ -5,7 +5,7 @@
 #include "algorithms/reference/media/cubic.hpp"
 #include "algorithms/reference/media/medium_path.hpp"
 #include "algorithms/reference/reference.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "tests/algorithms/reference/reference_scenes.hpp"
 
 namespace pellucid {

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/scattering/transfer_table.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::scattering {

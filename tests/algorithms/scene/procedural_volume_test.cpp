@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 
 namespace pellucid {

@@ -1,5 +1,3 @@
-#include "algorithms/reference/reference.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cassert>
@@ -12,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "algorithms/reference/media/scattering.hpp"
+#include "algorithms/reference/reference.hpp"
 
 namespace pellucid {
 namespace {

@@ -1,4 +1,4 @@
-#include "algorithms/scene/shapes/noise.hpp"
+#include "algorithms/scene/noise.hpp"
 
 #include <array>
 #include <cassert>

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/noise.hpp"
 #include "algorithms/scene/relief/motion.hpp"
-#include "algorithms/scene/shapes/noise.hpp"
 #include "algorithms/scene/toml/scene_description.hpp"
 
 namespace pellucid {
