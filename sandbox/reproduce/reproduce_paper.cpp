@@ -64,7 +64,7 @@ void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder
   std::vector<std::pair<sweeps::Spec, std::string>> specs;
   for (const sweeps::PaperSweep& sweep : outcome.paper->sweeps) {
     const auto extent = options.preview ? sweeps::Extent::preview : sweeps::Extent::full;
-    specs.emplace_back(sweeps::load_spec(sweep.spec, sweeps::installed_catalogue(), extent),
+    specs.emplace_back(sweeps::load_spec(sweep.spec, sweeps::installed_names(), extent),
                        sweeps::shell_word(sweep.spec) + (options.preview ? " --preview" : ""));
   }
   for (const auto& [spec, words] : specs) {

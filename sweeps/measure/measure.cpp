@@ -21,7 +21,7 @@
 #include "gl/display/display.hpp"
 #include "gl/error.hpp"
 #include "gl/timer.hpp"
-#include "sweeps/measure/class_errors.hpp"
+#include "sweeps/measure/errors_by_class.hpp"
 #include "sweeps/measure/frame_clock.hpp"
 #include "sweeps/measure/stopping.hpp"
 #include "sweeps/spec/clock.hpp"
@@ -188,7 +188,7 @@ void Measurer::compare(const Point& point, const Image& color, const std::filesy
   put_values(result.row, compared);
   if (session_->technique_info().classes && compared.flip_map.width > 0) {
     for (const NativeMap& map : session_->technique().native_maps())
-      put_class_errors(result.row, map, compared.flip_map);
+      put_errors_by_class(result.row, map, compared.flip_map);
   }
   result.row["reference_step_error_max"] = reference->step_error_max;
   result.row["reference_step_error_mean"] = reference->step_error_mean;

@@ -222,7 +222,7 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
   }
   ComparisonOptions comparing;
   comparing.metrics = MetricSet(point.metrics);
-  comparing.keep_map = comparing.metrics.has("flip");  // for class_errors.hpp
+  comparing.keep_map = comparing.metrics.has("flip");  // for errors_by_class.hpp
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   auto cached = std::make_shared<CachedReference>(CachedReference{
       Comparison(std::move(judge), regions, std::move(comparing)), exact.step_error_max, exact.step_error_mean,

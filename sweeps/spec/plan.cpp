@@ -67,16 +67,16 @@ std::optional<double> number_of(const Value& value) {
 }
 
 /// The parameters of a technique in a scene under their full names.
-std::vector<ParameterInfo> full_table(const Catalogue& catalogue, const std::string& technique,
+std::vector<ParameterInfo> full_table(const KnownNames& known_names, const std::string& technique,
                                       const std::string& scene) {
-  std::vector<ParameterInfo> infos = catalogue.technique_parameters(technique);
+  std::vector<ParameterInfo> infos = known_names.technique_parameters(technique);
   const auto add = [&](std::vector<ParameterInfo> more, const std::string& prefix) {
     for (ParameterInfo& info : more) {
       info.name = prefix + info.name;
       infos.push_back(std::move(info));
     }
   };
-  add(catalogue.scene(scene).parameters, "scene.");
+  add(known_names.scene(scene).parameters, "scene.");
   for (const CommonSettings& group : common_settings()) {
     add({group.table->infos().begin(), group.table->infos().end()}, std::string(group.prefix) + ".");
   }
@@ -107,7 +107,7 @@ struct PlacedAxis {
 /// Expands the blocks of one spec into a plan.
 class Expander {
  public:
-  Expander(const Spec& spec, const Catalogue& catalogue) : spec_(spec), catalogue_(catalogue) {}
+  Expander(const Spec& spec, const KnownNames& known_names) : spec_(spec), known_names_(known_names) {}
 
   Plan expand() {
     for (const RunBlock& block : spec_.blocks)
@@ -148,9 +148,9 @@ class Expander {
     in_block_.clear();
     for (const std::string& technique : block.techniques) {
       for (const std::string& scene : block.scenes) {
-        table_ = full_table(catalogue_, technique, scene);
+        table_ = full_table(known_names_, technique, scene);
         make_constraints(block);
-        const SceneFacts& facts = catalogue_.scene(scene);
+        const SceneFacts& facts = known_names_.scene(scene);
         const std::vector<std::string> chosen = block.views.empty() ? std::vector{facts.views.front()} : block.views;
         for (const std::string& view : chosen) {
           for (const Size& size : block.sizes) {
@@ -207,7 +207,7 @@ class Expander {
     shared_.metrics = block.metrics;
     shared_.timing = block.timing;
     shared_.keep = block.keep;
-    const SceneFacts& facts = catalogue_.scene(scene);
+    const SceneFacts& facts = known_names_.scene(scene);
     shared_.reference = block.reference;
     if (!block.metrics.empty()) {
       try {
@@ -335,7 +335,7 @@ class Expander {
 
   const std::string& code_hash(const std::string& technique) {
     const auto [at, is_new] = code_hashes_.try_emplace(technique);
-    if (is_new) at->second = catalogue_.code_hash(technique);
+    if (is_new) at->second = known_names_.code_hash(technique);
     return at->second;
   }
 
@@ -369,7 +369,7 @@ class Expander {
   }
 
   const Spec& spec_;
-  const Catalogue& catalogue_;
+  const KnownNames& known_names_;
   Plan plan_;
   std::vector<ParameterInfo> table_;
   std::vector<Expression> constraints_;
@@ -394,8 +394,8 @@ class Expander {
 
 }  // namespace
 
-Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
-  return Expander(spec, catalogue).expand();
+Plan make_plan(const Spec& spec, const KnownNames& known_names) {
+  return Expander(spec, known_names).expand();
 }
 
 std::filesystem::path picture_path(const std::filesystem::path& store, const Point& point) {

@@ -55,7 +55,7 @@ inline constexpr std::size_t kMaxPoints = 100'000;
 /// Expands a spec. Throws InputError "source:line:column: …" when a constraint is wrong or leaves a block empty. The
 /// order is a seeded shuffle: points that share scene, size and precomputation run in chunks, chunks of different
 /// techniques interleave, and points within a chunk that share a program are neighbours.
-Plan make_plan(const Spec&, const Catalogue& = installed_catalogue());
+Plan make_plan(const Spec&, const KnownNames& = installed_names());
 
 /// Where the picture of a point that keeps one lies: STORE.pictures/ID.png or .exr.
 std::filesystem::path picture_path(const std::filesystem::path& store, const Point&);

@@ -114,7 +114,7 @@ std::string resolve_scene(const std::string& scene, const std::string& source) {
   return (std::filesystem::path(source).parent_path() / path).lexically_normal().string();
 }
 
-void read_places(TableReader& table, const std::string& source, const Catalogue& catalogue, RunBlock& block) {
+void read_places(TableReader& table, const std::string& source, const KnownNames& known_names, RunBlock& block) {
   const auto known = [&](const PlacedText& name, const auto& look_up) {
     try {
       look_up();
@@ -123,17 +123,17 @@ void read_places(TableReader& table, const std::string& source, const Catalogue&
     }
   };
   for (const PlacedText& technique : distinct_texts(table, "techniques", Need::required)) {
-    known(technique, [&] { catalogue.technique_parameters(technique.text); });
+    known(technique, [&] { known_names.technique_parameters(technique.text); });
     block.techniques.push_back(technique.text);
   }
   for (const PlacedText& scene : distinct_texts(table, "scenes", Need::required)) {
     const std::string resolved = resolve_scene(scene.text, source);
-    known(scene, [&] { catalogue.scene(resolved); });
+    known(scene, [&] { known_names.scene(resolved); });
     block.scenes.push_back(resolved);
   }
   for (const PlacedText& view : distinct_texts(table, "views")) {
     for (const std::string& scene : block.scenes)
-      read_view(table, view, scene, catalogue.scene(scene).views);
+      read_view(table, view, scene, known_names.scene(scene).views);
     block.views.push_back(view.text);
   }
   for (const PlacedText& size : distinct_texts(table, "sizes"))
@@ -141,16 +141,16 @@ void read_places(TableReader& table, const std::string& source, const Catalogue&
   if (block.sizes.empty()) block.sizes.push_back({});
 }
 
-RunBlock read_block(TableReader& table, const std::string& source, const Catalogue& catalogue,
+RunBlock read_block(TableReader& table, const std::string& source, const KnownNames& known_names,
                     const RunBlock& defaults) {
   RunBlock block = defaults;
   block.at = table.place();
   block.name = identifier(table, "name");
-  read_places(table, source, catalogue, block);
+  read_places(table, source, known_names, block);
   read_timing(table, block.timing);
   read_reference(table, block.reference);
   read_metrics(table, block.metrics);
-  read_axes(table, catalogue, block);
+  read_axes(table, known_names, block);
   read_keep(table, block.keep);
   for (const PlacedText& text : distinct_texts(table, "constraints", Need::optional, true))
     block.constraints.push_back({text.text, text.at});
@@ -175,7 +175,7 @@ std::map<std::string, std::string> embedded_specs() {
   return found;
 }
 
-Spec read_spec(const TomlFile& file, const toml::table& tree, const Catalogue& catalogue) {
+Spec read_spec(const TomlFile& file, const toml::table& tree, const KnownNames& known_names) {
   Spec spec;
   spec.source = file.shown;
   TableReader root(file, tree);
@@ -195,7 +195,7 @@ Spec read_spec(const TomlFile& file, const toml::table& tree, const Catalogue& c
   root.finish();
   if (tables.empty()) root.fail(root.place(), "the spec has no [[run]] block");
   for (TableReader& table : tables) {
-    RunBlock block = read_block(table, file.shown, catalogue, defaults);
+    RunBlock block = read_block(table, file.shown, known_names, defaults);
     for (const RunBlock& other : spec.blocks) {
       if (other.name == block.name)
         table.fail(table.place("name"), fmt::format("a second block named '{}'", block.name));
@@ -209,33 +209,33 @@ Spec read_spec(const TomlFile& file, const toml::table& tree, const Catalogue& c
 
 }  // namespace
 
-Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& catalogue, Extent extent) {
+Spec parse_spec(std::string_view text, const std::string& source, const KnownNames& known_names, Extent extent) {
   if (text.size() > kMaxSpecBytes) throw InputError(fmt::format("{}: a spec may have {} bytes", source, kMaxSpecBytes));
   const TomlFile file{source};
   const auto parse = [&] { return std::move(*parse_toml(text, file)); };
   toml::table root = parse();
   Spec spec;
   if (extent == Extent::preview) {
-    spec = read_spec(file, preview_of(file, parse), catalogue);  // alone: the full spec may need assets
+    spec = read_spec(file, preview_of(file, parse), known_names);  // alone: the full spec may need assets
   } else {
     // A mistake in the preview shows at once, too.
-    if (root.contains("preview")) read_spec(file, preview_of(file, parse), catalogue);
+    if (root.contains("preview")) read_spec(file, preview_of(file, parse), known_names);
     root.erase("preview");
-    spec = read_spec(file, root, catalogue);
+    spec = read_spec(file, root, known_names);
   }
   spec.text = text;
   return spec;
 }
 
-Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue, Extent extent) {
+Spec load_spec(const std::string& path_or_name, const KnownNames& known_names, Extent extent) {
   if (!path_or_name.ends_with(".toml")) {
     const bool named_preview = path_or_name.ends_with(kPreview);
     const std::string_view base =
         std::string_view(path_or_name).substr(0, path_or_name.size() - (named_preview ? kPreview.size() : 0));
     for (const auto& [name, resource] : embedded_specs()) {
-      if (name == path_or_name) return parse_spec(*find_resource(resource), resource, catalogue, extent);
+      if (name == path_or_name) return parse_spec(*find_resource(resource), resource, known_names, extent);
       if (named_preview && name == base) {
-        return parse_spec(*find_resource(resource), resource, catalogue, Extent::preview);
+        return parse_spec(*find_resource(resource), resource, known_names, Extent::preview);
       }
     }
     const std::vector<std::string> names = list_specs();
@@ -244,7 +244,7 @@ Spec load_spec(const std::string& path_or_name, const Catalogue& catalogue, Exte
                                  near.empty() ? fmt::format("built in are: {}", fmt::join(names, ", "))
                                               : fmt::format("did you mean '{}'?", near)));
   }
-  return parse_spec(read_toml_text(path_or_name, "spec", kMaxSpecBytes), path_or_name, catalogue, extent);
+  return parse_spec(read_toml_text(path_or_name, "spec", kMaxSpecBytes), path_or_name, known_names, extent);
 }
 
 std::vector<std::string> list_specs() {

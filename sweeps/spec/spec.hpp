@@ -8,10 +8,11 @@
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/scene/toml/toml_reader.hpp"
-#include "sweeps/spec/catalogue.hpp"
+#include "sweeps/spec/known_names.hpp"
 #include "sweeps/spec/reference_settings.hpp"
 
-/// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the catalogue.
+/// A sweep's specification: a TOML file (format: sweeps/README.md), read and checked in full against the names that
+/// there are.
 namespace pellucid::sweeps {
 
 /// One swept parameter: a technique's, `scene.…`, `frame.…` or `shadow.…`, with values of the parameter's own type.
@@ -86,12 +87,12 @@ enum class Extent { full, preview };
 
 /// Reads both the spec and its preview, and returns the one that is wanted. Throws InputError "source:line:column: …"
 /// for the first thing wrong, and for a preview of a spec that has none.
-Spec parse_spec(std::string_view text, const std::string& source, const Catalogue& = installed_catalogue(),
+Spec parse_spec(std::string_view text, const std::string& source, const KnownNames& = installed_names(),
                 Extent = Extent::full);
 
 /// A path ending in .toml, or the name of an embedded spec (algorithms/TECHNIQUE/sweeps/NAME.toml); NAME_preview is its
 /// preview.
-Spec load_spec(const std::string& path_or_name, const Catalogue& = installed_catalogue(), Extent = Extent::full);
+Spec load_spec(const std::string& path_or_name, const KnownNames& = installed_names(), Extent = Extent::full);
 
 /// Names of the embedded specs, sorted, each followed by that of its preview.
 std::vector<std::string> list_specs();

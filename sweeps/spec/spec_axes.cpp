@@ -27,7 +27,7 @@ namespace {
 /// The choices of one block: every pair of technique and scene, whose tables must all know an axis.
 struct Owners {
   const TableReader& run;
-  const Catalogue& catalogue;
+  const KnownNames& known_names;
   const RunBlock& block;
 
   /// The tables that must hold `name`, and the name they know it by.
@@ -39,7 +39,7 @@ struct Owners {
     std::vector<Owner> owners;
     if (route(name).owner == ParameterOwner::scene) {
       for (const std::string& scene : block.scenes)
-        owners.push_back({"scene " + scene, catalogue.scene(scene).parameters});
+        owners.push_back({"scene " + scene, known_names.scene(scene).parameters});
     } else if (const auto common = std::find_if(
                    common_settings().begin(), common_settings().end(),
                    [&](const CommonSettings& group) { return name.starts_with(std::string(group.prefix) + "."); });
@@ -47,7 +47,7 @@ struct Owners {
       owners.push_back({std::string(common->prefix), {common->table->infos().begin(), common->table->infos().end()}});
     } else {
       for (const std::string& technique : block.techniques) {
-        owners.push_back({technique, catalogue.technique_parameters(technique)});
+        owners.push_back({technique, known_names.technique_parameters(technique)});
       }
     }
     return owners;
@@ -100,8 +100,8 @@ std::optional<Design> read_design(TableReader& run) {
 /// Reads [run.axes] and tells which axes walk together.
 class AxesReader {
  public:
-  AxesReader(TableReader& run, const Catalogue& catalogue, RunBlock& block)
-      : run_(run), block_(block), owners_{run, catalogue, block}, design_(read_design(run)) {
+  AxesReader(TableReader& run, const KnownNames& known_names, RunBlock& block)
+      : run_(run), block_(block), owners_{run, known_names, block}, design_(read_design(run)) {
     whole_zip_ = run.choice("combine", {"grid", "zip"}, 0) == 1;
     if (whole_zip_ && design_) {
       run.fail(run.place("combine"), "a design spreads its axes itself; zip them with others by `zip`");
@@ -308,10 +308,10 @@ class AxesReader {
   std::vector<Drawn> drawn_;
 };
 
-void read_fixed(TableReader& run, const Catalogue& catalogue, RunBlock& block) {
+void read_fixed(TableReader& run, const KnownNames& known_names, RunBlock& block) {
   std::optional<TableReader> fixed = run.table("fixed");
   if (!fixed) return;
-  const Owners owners{run, catalogue, block};
+  const Owners owners{run, known_names, block};
   for (const NamedValue& entry : named_values(*fixed)) {
     const Owners::Found infos = owners.find(entry);
     const auto same = [&](const Axis& axis) { return axis.name == entry.name; };
@@ -323,9 +323,9 @@ void read_fixed(TableReader& run, const Catalogue& catalogue, RunBlock& block) {
 
 }  // namespace
 
-void read_axes(TableReader& run, const Catalogue& catalogue, RunBlock& block) {
-  AxesReader(run, catalogue, block).read_all();
-  read_fixed(run, catalogue, block);
+void read_axes(TableReader& run, const KnownNames& known_names, RunBlock& block) {
+  AxesReader(run, known_names, block).read_all();
+  read_fixed(run, known_names, block);
 }
 
 }  // namespace pellucid::sweeps

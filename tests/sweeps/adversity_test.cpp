@@ -26,7 +26,7 @@
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/run.hpp"
 #include "sweeps/workers/worker_process.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 #include "tests/sweeps/set_clocks.hpp"
 
@@ -75,14 +75,14 @@ class Adversity : public testing::Test {
                        "\n[[run]]\nname = 'r'\ntechniques = ['faulty']\nscenes = ['ball']\nsizes = ['8x8']\n"
                        "[run.axes]\n" +
                        axes,
-                   "s.toml", catalogue);
+                   "s.toml", known_names);
     testing::internal::CaptureStderr();
-    summary = run_sweep(spec, make_plan(spec, catalogue), store, options);
+    summary = run_sweep(spec, make_plan(spec, known_names), store, options);
     return testing::internal::GetCapturedStderr();
   }
 
   TemporaryFolder folder;
-  FakeCatalogue catalogue;
+  FakeKnownNames known_names;
   std::filesystem::path store = folder / "s.db", log = folder / "log";
   RunOptions options;
   SweepSummary summary;

@@ -15,22 +15,22 @@
 #include <gtest/gtest.h>
 
 #include "sweeps/spec/plan.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-using test::FakeCatalogue;
+using test::FakeKnownNames;
 using test::input_error;
 
 const char* const kHead = "name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['forest']\n";
 
 Spec spec_of(const std::string& text) {
-  return parse_spec(kHead + text, "s.toml", FakeCatalogue());
+  return parse_spec(kHead + text, "s.toml", FakeKnownNames());
 }
 Plan plan_of(const std::string& text) {
-  const FakeCatalogue catalogue;
-  return make_plan(spec_of(text), catalogue);
+  const FakeKnownNames known_names;
+  return make_plan(spec_of(text), known_names);
 }
 std::string error_of(const std::string& text) {
   return input_error([&] { plan_of(text); });

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/store/store.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 /// A small plan and a store of one row.
 namespace pellucid::sweeps::test {
@@ -17,9 +17,9 @@ inline const char* const kSpec =
     "[[run]]\nname='b'\ntechniques=['hulls']\nscenes=['forest']\n[run.axes]\nhulls=[2,3]\n";
 
 struct Example {
-  FakeCatalogue catalogue;
-  Spec spec = parse_spec(kSpec, "s.toml", catalogue);
-  Plan plan = make_plan(spec, catalogue);
+  FakeKnownNames known_names;
+  Spec spec = parse_spec(kSpec, "s.toml", known_names);
+  Plan plan = make_plan(spec, known_names);
 };
 
 inline nlohmann::json row_of(const std::string& status, double timed_unix_s) {

@@ -21,7 +21,7 @@
 #include "sweeps/workers/run.hpp"
 #include "sweeps/workers/worker.hpp"
 #include "sweeps/workers/worker_protocol.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps::test {
 namespace {
@@ -88,14 +88,14 @@ int fake_worker(const std::string& log, const std::string& device) {
 
 /// A whole sweep in a process of its own, for tests that kill it.
 int fake_sweep(const std::string& store, const std::string& log, int points, int sleep, int frames) {
-  const FakeCatalogue catalogue;
-  const Spec spec = parse_spec(fake_spec(points, sleep, frames), "fake.toml", catalogue);
+  const FakeKnownNames known_names;
+  const Spec spec = parse_spec(fake_spec(points, sleep, frames), "fake.toml", known_names);
   RunOptions options;
   options.worker = self({"fake-worker", log, "a device"});
   options.argv = {"fake-sweep"};
   options.quiet = true;
   try {
-    const SweepSummary summary = run_sweep(spec, make_plan(spec, catalogue), store, options);
+    const SweepSummary summary = run_sweep(spec, make_plan(spec, known_names), store, options);
     return summary.left == 0 ? 0 : 3;
   } catch (const std::exception& e) {
     std::cerr << e.what() << std::endl;

@@ -17,7 +17,7 @@
 
 #include "gl/error.hpp"
 #include "sweeps/store/store.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 
 namespace pellucid::sweeps {

@@ -17,7 +17,7 @@
 #include "sweeps/store/sqlite.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/run.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 #include "tests/sweeps/set_clocks.hpp"
 

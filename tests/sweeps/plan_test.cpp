@@ -9,18 +9,18 @@
 #include <gtest/gtest.h>
 
 #include "sweeps/spec/constraint.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-using test::FakeCatalogue;
+using test::FakeKnownNames;
 using test::input_error;
 
 const char* const kHead = "name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['forest']\n";
 
-Plan plan_of(const std::string& text, const FakeCatalogue& catalogue = {}) {
-  return make_plan(parse_spec(text, "s.toml", catalogue), catalogue);
+Plan plan_of(const std::string& text, const FakeKnownNames& known_names = {}) {
+  return make_plan(parse_spec(text, "s.toml", known_names), known_names);
 }
 
 std::vector<std::string> values(const Plan& plan, const std::string& a, const std::string& b) {
@@ -122,8 +122,8 @@ TEST(Plan, OrderIsAShuffleThatSharesPrecomputation) {
 TEST(Plan, EveryThingThatMattersChangesTheId) {
   const std::string base = std::string(kHead) + "sizes=['64x48']\n";
   std::set<std::string> ids;
-  const auto add = [&](const std::string& text, const FakeCatalogue& catalogue = {}) {
-    const Plan plan = plan_of(text, catalogue);
+  const auto add = [&](const std::string& text, const FakeKnownNames& known_names = {}) {
+    const Plan plan = plan_of(text, known_names);
     EXPECT_EQ(plan.points.size(), 1U);
     EXPECT_EQ(plan.points[0].id.size(), 16U);
     EXPECT_TRUE(ids.insert(plan.points[0].id).second) << text;
@@ -140,10 +140,10 @@ TEST(Plan, EveryThingThatMattersChangesTheId) {
   add(base + "timing.max_seconds=5\n");
   add(base + "reference.tolerance=1e-3\n");
   add(base + "reference.surfaces='rays'\n");
-  FakeCatalogue edited_shader;
+  FakeKnownNames edited_shader;
   edited_shader.code = "code 2";
   add(base, edited_shader);
-  FakeCatalogue edited_scene;
+  FakeKnownNames edited_scene;
   edited_scene.forest.content_hash = "another hash";
   add(base, edited_scene);
 }

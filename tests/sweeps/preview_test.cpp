@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "sweeps/spec/plan.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-using test::FakeCatalogue;
+using test::FakeKnownNames;
 using test::input_error;
 
 const std::string kSpec = R"(name = "curves"
@@ -40,7 +40,7 @@ scenes = ["ball"]
 )";
 
 Spec parse(const std::string& overlay, Extent extent = Extent::preview) {
-  return parse_spec(kSpec + overlay, "s.toml", FakeCatalogue(), extent);
+  return parse_spec(kSpec + overlay, "s.toml", FakeKnownNames(), extent);
 }
 
 std::vector<std::string> texts(const Axis& axis) {
@@ -127,7 +127,7 @@ TEST(Preview, EveryBuiltInSpecHasOneUnderItsName) {
     const std::string preview = name + "_preview";
     ASSERT_NE(std::find(names.begin(), names.end(), preview), names.end());
     EXPECT_EQ(load_spec(preview).name, preview);
-    EXPECT_EQ(load_spec(name, installed_catalogue(), Extent::preview).name, preview);
+    EXPECT_EQ(load_spec(name, installed_names(), Extent::preview).name, preview);
     EXPECT_FALSE(make_plan(load_spec(preview)).points.empty());
   }
 }

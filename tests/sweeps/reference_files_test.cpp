@@ -7,7 +7,7 @@
 
 #include "gl/error.hpp"
 #include "sweeps/measure/reference_cache.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {

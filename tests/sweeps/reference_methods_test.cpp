@@ -12,7 +12,7 @@
 #include "gl/context.hpp"
 #include "sweeps/measure/measure.hpp"
 #include "sweeps/workers/worker_protocol.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -170,11 +170,11 @@ TEST_F(ReferenceCacheTest, ThePapersOwnReferenceIsManySlices) {
 }
 
 TEST(ReferenceSpec, RefusesWhatDoesNotGoTogether) {
-  const test::FakeCatalogue catalogue;
+  const test::FakeKnownNames known_names;
   const auto error = [&](const std::string& reference) {
     return test::input_error([&] {
       parse_spec("name='s'\n[reference]\n" + reference + "\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['ball']\n",
-                 "s.toml", catalogue);
+                 "s.toml", known_names);
     });
   };
   EXPECT_NE(error("method='slice'").find("'slices'"), std::string::npos) << error("method='slice'");

@@ -10,7 +10,7 @@
 #include "gl/context.hpp"
 #include "sweeps/measure/measure.hpp"
 #include "tests/glass_ball.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -45,12 +45,12 @@ TEST(SettledReference, TakesRaysWhereTheForwardPassCannotDraw) {
 }
 
 TEST(SettledReference, IsCheckedBeforeTheFirstFrame) {
-  test::FakeCatalogue catalogue;
-  catalogue.ball.interfaces = true;
+  test::FakeKnownNames known_names;
+  known_names.ball.interfaces = true;
   const auto plan = [&](const std::string& reference) {
     return make_plan(parse_spec("name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['ball']\n" + reference,
-                                "s.toml", catalogue),
-                     catalogue);
+                                "s.toml", known_names),
+                     known_names);
   };
   EXPECT_EQ(plan("").points.at(0).reference.surfaces, ReferenceSurfaces::rays);
   const std::string error = test::input_error([&] { plan("reference.surfaces='raster'\n"); });

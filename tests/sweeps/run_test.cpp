@@ -22,14 +22,14 @@
 #include "sweeps/store/merge.hpp"
 #include "sweeps/store/store.hpp"
 #include "sweeps/workers/worker_process.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
 using nlohmann::json;
-using test::FakeCatalogue;
+using test::FakeKnownNames;
 using test::input_error;
 using test::self;
 using test::TemporaryFolder;
@@ -42,8 +42,8 @@ class Sweep : public testing::Test {
     options.quiet = true;
   }
   SweepSummary run(const std::string& text) {
-    const Spec spec = parse_spec(text, "s.toml", catalogue);
-    return run_sweep(spec, make_plan(spec, catalogue), store, options);
+    const Spec spec = parse_spec(text, "s.toml", known_names);
+    return run_sweep(spec, make_plan(spec, known_names), store, options);
   }
   /// The points that the fake workers were asked for, in order.
   std::vector<std::string> requests() const {
@@ -59,7 +59,7 @@ class Sweep : public testing::Test {
   }
 
   TemporaryFolder folder;
-  FakeCatalogue catalogue;
+  FakeKnownNames known_names;
   std::filesystem::path store = folder / "s.db";
   std::filesystem::path log = folder / "log";
   RunOptions options;

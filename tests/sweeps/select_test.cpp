@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {

@@ -7,16 +7,16 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
 
-using test::FakeCatalogue;
+using test::FakeKnownNames;
 using test::input_error;
 
 Spec parse(const std::string& text) {
-  return parse_spec(text, "s.toml", FakeCatalogue());
+  return parse_spec(text, "s.toml", FakeKnownNames());
 }
 
 TEST(Spec, ReadsEverything) {
@@ -111,7 +111,7 @@ TEST(Spec, AZipMayRepeatAValue) {
 
 TEST(Spec, AScenesPathCountsFromTheSpec) {
   const Spec spec = parse_spec("name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['../ball.toml']\n",
-                               "a/b/s.toml", FakeCatalogue());
+                               "a/b/s.toml", FakeKnownNames());
   EXPECT_EQ(spec.blocks[0].scenes[0], "a/ball.toml");
 }
 
@@ -246,9 +246,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& wrong) { return std::string(wrong.param.what); });
 
 TEST(Spec, MissingFilesAndNames) {
-  EXPECT_EQ(input_error([] { load_spec("/nowhere/x.toml", FakeCatalogue()); }),
+  EXPECT_EQ(input_error([] { load_spec("/nowhere/x.toml", FakeKnownNames()); }),
             "cannot read spec '/nowhere/x.toml': No such file or directory");
-  EXPECT_EQ(input_error([] { load_spec("no_such_spec", FakeCatalogue()); }).substr(0, 29),
+  EXPECT_EQ(input_error([] { load_spec("no_such_spec", FakeKnownNames()); }).substr(0, 29),
             "no spec named 'no_such_spec';");
 }
 

@@ -18,7 +18,7 @@
 #include "sweeps/spec/provenance.hpp"
 #include "sweeps/store/sqlite.hpp"
 #include "tests/sweeps/example_store.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -78,10 +78,10 @@ TEST(Store, AChangedPlanHidesOldRowsAndKeepsThem) {
   const TemporaryFolder folder;
   Example e;
   fill(folder / "s.db", e);
-  e.catalogue.code = "other";
+  e.known_names.code = "other";
   {
     Store store(folder / "s.db", Access::write);
-    store.put_plan(e.spec, make_plan(e.spec, e.catalogue));
+    store.put_plan(e.spec, make_plan(e.spec, e.known_names));
   }
   EXPECT_TRUE(read_rows(folder / "s.db").empty());
   EXPECT_EQ(Store(folder / "s.db", Access::read).points().size(), 1U);

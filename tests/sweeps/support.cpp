@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps::test {
 

@@ -12,7 +12,7 @@
 
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/tables/tables.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps::test {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "sweeps/store/csv.hpp"
 #include "sweeps/tables/tables.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps::test {
 namespace {

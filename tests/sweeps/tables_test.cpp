@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/spec/plan.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps::test {
 namespace {

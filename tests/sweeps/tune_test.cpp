@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/spec/plan.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -84,12 +84,12 @@ class NoisyMachine {
   double value(std::size_t point, const char* name) const {
     return static_cast<double>(std::get<std::int64_t>(plan_.points[point].parameters.at(name)));
   }
-  test::FakeCatalogue catalogue_;
+  test::FakeKnownNames known_names_;
   Plan plan_ =
       make_plan(parse_spec("name = 's'\n[[run]]\nname = 'a'\ntechniques = ['hulls']\nscenes = ['forest']\n[run.axes]\n"
                            "hulls = { from = 1, to = 16, steps = 16 }\nsamples = { from = 1, to = 16, steps = 16 }\n",
-                           "s.toml", catalogue_),
-                catalogue_);
+                           "s.toml", known_names_),
+                known_names_);
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   double single_, in_turn_;

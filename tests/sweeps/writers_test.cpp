@@ -16,7 +16,7 @@
 
 #include "gl/error.hpp"
 #include "sweeps/store/store.hpp"
-#include "tests/sweeps/fake_catalogue.hpp"
+#include "tests/sweeps/fake_known_names.hpp"
 #include "tests/sweeps/fake_worker.hpp"
 
 /// Takes the place of the C library's in this program: with $PELLUCID_TEST_NO_FLOCK every lock is granted, as on file

@@ -140,7 +140,7 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
 }
 
 Spec load_spec_of(const SweepArguments& arguments) {
-  return load_spec(arguments.spec, installed_catalogue(), arguments.preview ? Extent::preview : Extent::full);
+  return load_spec(arguments.spec, installed_names(), arguments.preview ? Extent::preview : Extent::full);
 }
 
 int run(const SweepArguments& arguments) {

@@ -1,4 +1,4 @@
-#include "sweeps/spec/catalogue.hpp"
+#include "sweeps/spec/known_names.hpp"
 
 #include <map>
 #include <utility>
@@ -11,7 +11,7 @@
 namespace pellucid::sweeps {
 namespace {
 
-class Installed final : public Catalogue {
+class Installed final : public KnownNames {
  public:
   std::vector<std::string> techniques() const override {
     std::vector<std::string> names;
@@ -48,9 +48,9 @@ class Installed final : public Catalogue {
 
 }  // namespace
 
-const Catalogue& installed_catalogue() {
-  static const Installed catalogue;
-  return catalogue;
+const KnownNames& installed_names() {
+  static const Installed known_names;
+  return known_names;
 }
 
 }  // namespace pellucid::sweeps

@@ -1,5 +1,5 @@
 // Where a picture's error lies, by class.
-#include "sweeps/measure/class_errors.hpp"
+#include "sweeps/measure/errors_by_class.hpp"
 
 #include <limits>
 
@@ -15,7 +15,7 @@ TEST(ClassErrors, SumUpAPicturesErrorByClass) {
   Image flip(5, 1, 1);
   flip.pixels = {0.1F, 0.5F, 0.2F, 0.9F, 0.2F};  // the fourth is of no class
   nlohmann::json row = nlohmann::json::object();
-  put_class_errors(row, map, flip);
+  put_errors_by_class(row, map, flip);
   EXPECT_NEAR(row.at("flip_mean_right").get<double>(), 0.15, 1e-7);
   EXPECT_NEAR(row.at("flip_mean_wrong").get<double>(), 0.35, 1e-7);
   EXPECT_NEAR(row.at("flip_share_right").get<double>(), 0.3, 1e-7);
@@ -25,13 +25,13 @@ TEST(ClassErrors, SumUpAPicturesErrorByClass) {
 
 TEST(ClassErrors, SayNothingOfOtherMaps) {
   nlohmann::json row = nlohmann::json::object();
-  put_class_errors(row, {"hit_error_m", "m", "", Image(2, 1, 1)}, Image(2, 1, 1));
+  put_errors_by_class(row, {"hit_error_m", "m", "", Image(2, 1, 1)}, Image(2, 1, 1));
   EXPECT_TRUE(row.empty());
 }
 
 TEST(ClassErrors, OfAPerfectPictureHaveNoShares) {
   nlohmann::json row = nlohmann::json::object();
-  put_class_errors(row, {"hit_class", "class", "", Image(2, 1, 1), {"right"}}, Image(2, 1, 1));
+  put_errors_by_class(row, {"hit_class", "class", "", Image(2, 1, 1), {"right"}}, Image(2, 1, 1));
   EXPECT_EQ(row.at("flip_mean_right"), 0.0);
   EXPECT_FALSE(row.contains("flip_share_right"));
 }

@@ -18,9 +18,9 @@ struct SceneFacts {
 };
 
 /// The names that a spec may use. The installed one asks the registry and the scene loader; tests bring their own.
-class Catalogue {
+class KnownNames {
  public:
-  virtual ~Catalogue() = default;
+  virtual ~KnownNames() = default;
   virtual std::vector<std::string> techniques() const = 0;
   /// Throws InputError with the nearest name, as do the next two.
   virtual std::vector<ParameterInfo> technique_parameters(std::string_view technique) const = 0;
@@ -31,6 +31,6 @@ class Catalogue {
 };
 
 /// The techniques and scenes of this program; scenes are loaded once each, on first use.
-const Catalogue& installed_catalogue();
+const KnownNames& installed_names();
 
 }  // namespace pellucid::sweeps

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gl/error.hpp"
-#include "sweeps/spec/catalogue.hpp"
+#include "sweeps/spec/known_names.hpp"
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/spec/spec.hpp"
 #include "tests/temporary_folder.hpp"
@@ -70,7 +70,7 @@ struct SceneParameters {
   }
 };
 
-class FakeCatalogue final : public Catalogue {
+class FakeKnownNames final : public KnownNames {
  public:
   std::string code = "code 1";
   SceneFacts forest{"hash of the forest", {"front", "inside"}, infos<SceneParameters>()};

@@ -1,4 +1,4 @@
-#include "sweeps/measure/class_errors.hpp"
+#include "sweeps/measure/errors_by_class.hpp"
 
 #include <cassert>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace pellucid::sweeps {
 
-void put_class_errors(nlohmann::json& row, const NativeMap& map, const Image& flip) {
+void put_errors_by_class(nlohmann::json& row, const NativeMap& map, const Image& flip) {
   if (map.classes.empty()) return;
   assert(flip.width == map.values.width && flip.height == map.values.height && flip.channels == 1);
   std::vector<double> sums(map.classes.size(), 0);
