@@ -1,6 +1,7 @@
 #include "gl/window.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -14,6 +15,10 @@
 namespace pellucid::gl {
 
 namespace {
+
+// Threads may wake a window that is just being closed.
+std::mutex waking;
+bool open_for_waking = false;
 
 std::string glfw_reason() {
   const char* text = nullptr;
@@ -33,7 +38,13 @@ Window::Window(const WindowOptions& options) {
   glfwWindowHint(GLFW_STENCIL_BITS, 8);  // NanoVG fills with it
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  // A context that tells when the device was reset, where the driver has such.
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_NO_ROBUSTNESS);
+    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+  }
   if (window_ == nullptr) {
     const std::string reason = glfw_reason();
     glfwTerminate();
@@ -42,9 +53,15 @@ Window::Window(const WindowOptions& options) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   adopt_current_context();
+  const std::scoped_lock lock(waking);
+  open_for_waking = true;
 }
 
 Window::~Window() {
+  {
+    const std::scoped_lock lock(waking);
+    open_for_waking = false;
+  }
   detail::clear_current();
   glfwDestroyWindow(window_);
   glfwTerminate();
@@ -62,6 +79,10 @@ void Window::swap_buffers() {
   glfwSwapBuffers(window_);
 }
 
+bool Window::context_lost() {
+  return glGetGraphicsResetStatus() != GL_NO_ERROR;
+}
+
 bool Window::should_close() const {
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }
@@ -77,7 +98,8 @@ void Window::wait_events(std::optional<double> seconds) {
 }
 
 void Window::wake() {
-  glfwPostEmptyEvent();
+  const std::scoped_lock lock(waking);
+  if (open_for_waking) glfwPostEmptyEvent();
 }
 
 float Window::content_scale() const {

@@ -34,10 +34,12 @@ class Window {
   void show();
   void set_title(const std::string&);
   void swap_buffers();
+  /// True when the device was reset and the driver tells: nothing is drawn any more, and only another window helps.
+  static bool context_lost();
   bool should_close() const;
   /// Sleeps until there is an event, at most `seconds` when given, and runs the callbacks.
   static void wait_events(std::optional<double> seconds);
-  /// Wakes wait_events() from any thread.
+  /// Wakes wait_events() from any thread; does nothing while there is no window.
   static void wake();
   /// The monitor's scale: 1 at 96 dots per inch, fractions too.
   float content_scale() const;

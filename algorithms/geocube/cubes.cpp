@@ -4,7 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 
 #include "algorithms/geocube/bound_search.hpp"
 #include "algorithms/geocube/weld.hpp"
+#include "algorithms/progress.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {
@@ -147,7 +150,8 @@ class Cones {
     cosine_c_ = std::sqrt(std::max(0.0, 1 - sine_c_ * sine_c_));
   }
 
-  void fill(Cube& cube) {
+  /// `work` names it to whoever waits.
+  void fill(Cube& cube, const std::string& work) {
     const auto rows = static_cast<std::size_t>(6 * grid_.n()), n = static_cast<std::size_t>(grid_.n());
     for (std::size_t k = 0; k < radial_.layers.size(); ++k) {
       cube.layers.emplace_back();
@@ -157,6 +161,7 @@ class Cones {
       if (k > 0) layer.inners.assign(grid_.texels(), glm::vec4(0.0F));
       // By single rows, so that no core is left with the dear ones at the end.
       const tbb::blocked_range<std::size_t> all_rows(0, rows, 1);
+      std::atomic<std::size_t> done{0};
       tbb::parallel_for(
           all_rows,
           [&](const auto& range) {
@@ -165,6 +170,8 @@ class Cones {
               hints.a = hints.b = row * n;
               for (std::size_t x = 0; x < n; ++x)
                 fill(layer, k, row * n + x, hints);
+              const std::size_t finished = k * rows + ++done;
+              tell_progress(work, static_cast<double>(finished) / static_cast<double>(rows * radial_.layers.size()));
             }
           },
           tbb::simple_partitioner());
@@ -285,7 +292,8 @@ CubeSet build_cubes(const Solid& solid, std::span<const glm::dvec3> centers, con
     if (options.use_d) cube.sphere = static_cast<float>(solid.tree().nearest(center).distance);
     const Radial radial = trace_all(solid, center, grid, options.layers);
     cube.dropped_share = static_cast<double>(radial.dropped) / static_cast<double>(grid.texels());
-    Cones(solid, center, options, radial).fill(cube);
+    Cones(solid, center, options, radial)
+        .fill(cube, fmt::format("cones of cube {} of {}", result.cubes.size() + 1, centers.size()));
     result.cubes.push_back(std::move(cube));
   }
 

@@ -8,6 +8,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "algorithms/progress.hpp"
 #include "algorithms/scene/files/cache_file.hpp"
 #include "gl/cube_faces.hpp"
 
@@ -70,7 +71,8 @@ void Translucency::refresh(const Scene& scene) {
   if (chain_ && (environment.image || same_gradient(environment, filtered_))) return;
   KeyChainOptions options = settings_.chain;
   if (!environment.image) options.face_size = kLeastFace;  // a gradient has no details
-  const KeyChain chain = key_chain(environment, options, environment.image ? cache_folder("key_maps") : "");
+  const KeyChain chain = key_chain(environment, options, environment.image ? cache_folder("key_maps") : "",
+                                   [](double share) { tell_progress("filtering the environment", share); });
   chain_ = gl::Texture::make_cube("key maps", gl::Format::rgba16f, options.face_size / 2, chain.widths.levels());
   for (std::size_t level = 0; level < chain.half_rgb.size(); ++level) {
     const std::vector<std::uint16_t>& half = chain.half_rgb[level];

@@ -1,16 +1,20 @@
 // pellucid view, and the hidden renderer behind its window.
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "algorithms/scene/images/image.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/error.hpp"
+#include "gl/resources/resources.hpp"
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/viewer/app/viewer.hpp"
@@ -74,6 +78,29 @@ ViewState initial_state(const Options& options, const cli::App& app) {
   return state;
 }
 
+/// Shaders that a measurement may save again and again; the folder goes with it.
+class ScratchShaders {
+ public:
+  explicit ScratchShaders(const std::string& technique)
+      : root_(std::filesystem::temp_directory_path() / fmt::format("pellucid_measure_{}", ::getpid())) {
+    for (const std::string& name : list_resources("algorithms/" + technique + "/", ".frag.glsl")) {
+      std::filesystem::create_directories((root_ / name).parent_path());
+      std::ofstream(root_ / name) << find_resource(name).value_or("");
+    }
+    std::filesystem::create_directories(root_);
+  }
+  ~ScratchShaders() {
+    std::error_code ignored;
+    std::filesystem::remove_all(root_, ignored);
+  }
+  ScratchShaders(const ScratchShaders&) = delete;
+  ScratchShaders& operator=(const ScratchShaders&) = delete;
+  const std::filesystem::path& root() const { return root_; }
+
+ private:
+  std::filesystem::path root_;
+};
+
 int view(Options options, const cli::App& app) {
   options.viewer.state = initial_state(options, app);
   options.viewer.size_follows_window = options.size == "window";
@@ -83,6 +110,13 @@ int view(Options options, const cli::App& app) {
     options.viewer.window_height = size.height;
   }
   if (options.ui_scale > 0) options.viewer.ui_scale = options.ui_scale;
+  std::optional<ScratchShaders> scratch;
+  if (options.viewer.measure) {
+    if (!options.shaders.empty())
+      throw InputError("--measure saves shaders in a folder of its own; leave --shaders out");
+    scratch.emplace(options.viewer.state.technique);
+    options.shaders = scratch->root();
+  }
   if (!options.shaders.empty()) ::setenv("PELLUCID_SHADER_PATH", options.shaders.c_str(), 1);
   if (const char* shaders = std::getenv("PELLUCID_SHADER_PATH")) options.viewer.shaders = shaders;
   return run_viewer(options.viewer);
@@ -125,11 +159,17 @@ void add_view(cli::App& root, std::vector<Command>& commands) {
                                  "Turn every knob at random from this seed, check that each picture is of the panel's "
                                  "state, and close");
   app->add_option("--seconds", viewer.tweak_seconds, "How long")->needs(random)->capture_default_str();
+  auto* measure = app->add_flag("--measure", viewer.measure,
+                                "Measure the window itself, print the figures and close; status 3 when one misses");
+  app->add_flag("--json", viewer.json, "The figures as JSON")->needs(measure);
+  app->add_option("--lose-context-at", viewer.lose_context_at,
+                  "For tests: treat the window's graphics context as lost after so many pictures");
   app->add_option("--log", viewer.log, "Write what the window shows, as JSON lines, for tests and reports of faults");
   app->footer(
       "Examples:\n"
       "  pellucid view fog_forest -t volume_slices\n"
       "  pellucid view picture.exr          the exact state that made the picture\n"
+      "  pellucid view fog_forest -t volume_slices --measure\n"
       "Press ? in the window for its keys.");
   commands.push_back({app, [options, app] { return view(*options, *app); }});
 

@@ -96,17 +96,23 @@ WorkerProcess::Received WorkerProcess::receive(std::chrono::steady_clock::time_p
     }
     if (child_.from < 0 || input_.size() > kMaxLineBytes) return {Event::ended, std::exchange(input_, {})};
     const auto now = std::chrono::steady_clock::now();
-    if (now - last > kLongestTurn) deadline += now - last;
+    const bool endless = deadline == std::chrono::steady_clock::time_point::max();
+    if (now - last > kLongestTurn && !endless) deadline += now - last;
     last = now;
-    if (now >= deadline) return {Event::timeout, {}};
     if (!idle()) return {Event::stopped, {}};
     std::array<pollfd, 2> files{pollfd{child_.from, POLLIN, 0}, pollfd{child_.errors, POLLIN, 0}};
-    if (::poll(files.data(), files.size(), kTickMs) <= 0) continue;  // a tick, or a signal that `idle` will see
+    // After the deadline it still looks once for what is there already.
+    const bool late = now >= deadline;
+    if (::poll(files.data(), files.size(), late ? 0 : kTickMs) <= 0) {
+      if (late) return {Event::timeout, {}};
+      continue;  // a tick, or a signal that `idle` will see
+    }
     if (files[1].revents != 0) {
       read_into(child_.errors, error_tail_);
       if (error_tail_.size() > kErrorTailBytes) error_tail_.erase(0, error_tail_.size() - kErrorTailBytes);
     }
     if (files[0].revents != 0) read_into(child_.from, input_);
+    if (late && child_.from >= 0 && input_.find('\n') == std::string::npos) return {Event::timeout, {}};
   }
 }
 

@@ -30,8 +30,12 @@ class WorkerProcess {
     std::string line;  ///< without the newline; at `ended`, what came without one
   };
   /// Waits for the next whole line until `deadline`, which moves on by the time for which this process itself was
-  /// stopped. `idle` is called a few times a second; when it returns false the wait is `stopped`.
+  /// stopped; with one that has passed it takes what is there. `idle` is called a few times a second; when it returns
+  /// false the wait is `stopped`.
   Received receive(std::chrono::steady_clock::time_point deadline, const std::function<bool()>& idle);
+
+  /// The file that becomes readable when it has written something or has ended; negative once it is closed.
+  int output() const { return child_.from; }
 
   /// Kills it if it runs, waits, and tells how it ended: "killed by signal 11 (Segmentation fault)", "ended with status
   /// 1".

@@ -1,5 +1,6 @@
 #include "tests/viewer/window.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -82,20 +83,34 @@ ViewerWindow::ViewerWindow(std::vector<std::string> arguments, const TemporaryFo
   std::string why;
   env_["DISPLAY"] = XServer::get(why)->display();
   env_["LP_NUM_THREADS"] = "2";
-  env_["XDG_CONFIG_HOME"] = (folder / "config").string();
+  env_.emplace("XDG_CONFIG_HOME", (folder / "config").string());
   std::filesystem::remove(log_);
   arguments.insert(arguments.begin(), {PELLUCID_PROGRAM, "view"});
-  arguments.insert(arguments.end(), {"--log", log_.string(), "--folder", folder_.string(), "--ui-scale", "1"});
+  arguments.insert(arguments.end(), {"--log", log_.string()});
+  for (const auto& [option, value] : {std::pair{"--folder", folder_.string()}, {"--ui-scale", std::string("1")}})
+    if (std::find(arguments.begin(), arguments.end(), option) == arguments.end())
+      arguments.insert(arguments.end(), {option, value});
   process_ = std::make_unique<Background>(arguments, Setting{.folder = folder_, .environment = env_});
   wait("places", [](const json& event) { return event.at("event") == "places"; });
+  waited_ = 0;  // the first picture may have come before
+  find();
+}
+
+void ViewerWindow::find() {
   const Outcome found =
       run({"xdotool", "search", "--pid", std::to_string(pid()), "--name", "Pellucid"}, {.environment = env_});
-  id_ = found.out.substr(0, found.out.find('\n'));
+  // The last line: a window that was just closed may still be listed before its successor.
+  const std::string lines = found.out.substr(0, found.out.find_last_not_of('\n') + 1);
+  id_ = lines.substr(lines.rfind('\n') + 1);
   if (id_.empty()) throw std::runtime_error("the window is not found: " + found.err);
   xdotool({"windowmove", id_, "0", "0", "windowfocus", "--sync", id_});
 }
 
 ViewerWindow::~ViewerWindow() = default;
+
+bool is(const json& event, const char* name) {
+  return event.at("event") == name;
+}
 
 int ViewerWindow::pid() {
   for (const json& event : events())
@@ -163,6 +178,34 @@ bool ViewerWindow::shows(const std::string& id) {
   return false;
 }
 
+void ViewerWindow::wait_until(const std::string& what, const std::function<bool()>& reached) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!reached()) {
+    if (std::chrono::steady_clock::now() > deadline || !running())
+      throw std::runtime_error(fmt::format("{} never came", what));
+    std::this_thread::sleep_for(10ms);
+  }
+}
+
+std::vector<std::string> ViewerWindow::widgets() {
+  const auto& all = events();
+  std::vector<std::string> out;
+  for (auto it = all.rbegin(); it != all.rend() && out.empty(); ++it) {
+    if (it->at("event") != "places") continue;
+    for (const auto& [id, place] : it->at("widgets").items())
+      out.push_back(id);
+  }
+  return out;
+}
+
+void ViewerWindow::wait_status(const std::vector<std::string>& parts) {
+  wait("the status", [&](const json& event) {
+    return event.at("event") == "status" && std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
+             return event.at("words").get<std::string>().find(part) != std::string::npos;
+           });
+  });
+}
+
 void ViewerWindow::xdotool(const std::vector<std::string>& words) {
   std::vector<std::string> command{"xdotool"};
   command.insert(command.end(), words.begin(), words.end());
@@ -189,6 +232,10 @@ void ViewerWindow::drag(const std::string& id, double from, double to) {
 
 void ViewerWindow::key(const std::string& keys) {
   xdotool({"key", "--window", "0", keys});
+}
+
+void ViewerWindow::keys(const std::string& key, int times) {
+  xdotool({"key", "--delay", "25", "--repeat", std::to_string(times), "--window", "0", key});
 }
 
 void ViewerWindow::type(const std::string& text) {

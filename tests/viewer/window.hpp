@@ -33,6 +33,9 @@ class XServer {
   std::string display_;
 };
 
+/// True of an event of the log that goes by `name`.
+bool is(const nlohmann::json& event, const char* name);
+
 /// `pellucid view` with `arguments`, until it is closed or goes out of scope.
 class ViewerWindow {
  public:
@@ -51,10 +54,19 @@ class ViewerWindow {
   /// Where a widget is now: x, y, width, height in the window.
   std::array<int, 4> place(const std::string& id);
   bool shows(const std::string& id);
+  /// Waits until `reached` holds, whatever the events are; throws after 60 s.
+  void wait_until(const std::string& what, const std::function<bool()>& reached);
+  /// The ids of all widgets that are there now.
+  std::vector<std::string> widgets();
+  /// Waits for a status line that has all of `parts`.
+  void wait_status(const std::vector<std::string>& parts);
+  /// Takes the newest window of the program for the one that is driven.
+  void find();
   void click(const std::string& id, double share = 0.5);
   void drag(const std::string& id, double from, double to);
   void click_at(int x, int y, int button = 1);
-  void key(const std::string& keys);  ///< as xdotool names them: "Tab", "shift+Tab", "ctrl+s"
+  void keys(const std::string& key, int times);  ///< one key again and again
+  void key(const std::string& keys);             ///< as xdotool names them: "Tab", "shift+Tab", "ctrl+s"
   void type(const std::string& text);
   /// Presses Tab until the widget has the focus.
   void tab_to(const std::string& id);
@@ -63,6 +75,7 @@ class ViewerWindow {
   void xdotool(const std::vector<std::string>& words);
   bool running();
   int pid();
+  const std::string& display() const { return env_.at("DISPLAY"); }
   void close();
 
  private:

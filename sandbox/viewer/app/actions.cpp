@@ -41,7 +41,10 @@ void App::make_actions() {
   add(GLFW_KEY_V, shift, "Shift+V", "previous view", [this] { panel_.step_view(-1); });
   add(GLFW_KEY_HOME, 0, "Home", "back to the scene's first view", [this] { workspace_.set_view(""); });
   add(GLFW_KEY_R, shift, "Shift+R", "every parameter back to its default", [this] { panel_.reset_all(); });
-  add(GLFW_KEY_F5, 0, "F5", "draw again", [this] { workspace_.ask(); });
+  add(GLFW_KEY_F5, 0, "F5", "draw again, with another renderer where one has failed", [this] {
+    second_.again();
+    workspace_.ask();
+  });
   add(GLFW_KEY_SPACE, 0, "Space", "play or pause scene.time_s", [this] {
     playing_ = !playing_;
     played_s_ = glfwGetTime();
@@ -102,7 +105,9 @@ void App::make_actions() {
     }
   });
   add(GLFW_KEY_K, 0, "K", "keep this set-up as a bookmark", [this] { keep_bookmark(); });
-  add(GLFW_KEY_C, ctrl, "Ctrl+C", "copy the picture as PNG", [this] { copy_picture(); });
+  add(GLFW_KEY_C, ctrl, "Ctrl+C", "copy the picture as PNG", [this] { copy_picture(".png"); });
+  add(GLFW_KEY_C, ctrl | shift, "Ctrl+Shift+C", "copy it as EXR, with all that made it",
+      [this] { copy_picture(".exr"); });
   add(GLFW_KEY_Q, ctrl, "Ctrl+Q", "close", [this] { glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE); });
 
   for (const Action& action : actions_)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -24,6 +25,7 @@ namespace pellucid::sandbox {
 namespace {
 
 constexpr double kSaid_s = 6;
+constexpr double kHeldBack_s = 0.04;
 constexpr int kStatusHeight = 22;
 
 std::string title(const ViewState& state) {
@@ -38,19 +40,42 @@ gl::WindowOptions window_options(const ViewerOptions& options) {
   return out;
 }
 
+std::string state_as_command(const Kept& kept) {
+  return sweeps::shell_line(render_words(kept.workspace.state(Side::a), "picture.png"));
+}
+
 }  // namespace
 
-App::App(const ViewerOptions& options)
-    : options_(options),
-      window_(window_options(options)),
-      desk_(new Desk(window_.handle(), options.ui_scale.value_or(window_.content_scale()))),
-      workspace_(options.state, options.device, [] { gl::Window::wake(); }),
-      second_(workspace_, options.device, [] { gl::Window::wake(); }),
+Kept::Kept(const ViewerOptions& given)
+    : options(given),
+      workspace(given.state, given.device, [] { gl::Window::wake(); }),
+      second(workspace, given.device, [] { gl::Window::wake(); }),
+      journal(given.log) {
+  display.exposure_ev = given.exposure_ev;
+  if (given.random_tweaks) {
+    tweaking.emplace(*given.random_tweaks, given.tweak_seconds);
+    workspace.want_counts();
+  }
+}
+
+App::App(Kept& kept)
+    : kept_(kept),
+      options_(kept.options),
+      window_(window_options(kept.options)),
+      desk_(new Desk(window_.handle(), kept.options.ui_scale.value_or(window_.content_scale()))),
+      workspace_(kept.workspace),
+      second_(kept.second),
       flip_([] { gl::Window::wake(); }),
       panel_(*desk_, workspace_),
-      journal_(options.log) {
-  display_.exposure_ev = options.exposure_ev;
-  pictures_.set_transform(options.display, options.display_view, options.look);
+      journal_(kept.journal),
+      display_(kept.display),
+      zoom_(kept.zoom),
+      blink_(kept.blink),
+      layer_kind_(kept.layer),
+      native_map_(kept.native_map),
+      box_(kept.box),
+      sweep_(kept.sweep) {
+  pictures_.set_transform(options_.display, options_.display_view, options_.look);
   desk_->status = [this] { return status(); };
   desk_->status_is_bad = [this] { return status_is_bad(); };
   panel_.failed = [this](const std::string& why) { say(why, true); };
@@ -60,14 +85,25 @@ App::App(const ViewerOptions& options)
   panel_.add_part(live_part());
   panel_.add_part(display_part());
   panel_.add_part(out_part());
-  if (!options.tev.empty()) tev_ = std::make_unique<TevClient>(options.tev);
-  if (!options.shaders.empty()) {
+  if (!options_.tev.empty()) tev_ = std::make_unique<TevClient>(options_.tev);
+  if (!options_.shaders.empty()) {
     shader_watch_ = std::make_unique<FileWatch>([] { gl::Window::wake(); });
-    shader_watch_->add_tree(options.shaders);
+    shader_watch_->add_tree(options_.shaders);
   }
-  if (!options.compare.empty()) choose_against(options.compare);
-  if (options.random_tweaks) tweaks_.emplace(*options.random_tweaks);
+  if (kept_.windows++ == 0 && !options_.compare.empty()) choose_against(options_.compare);
+  if (kept_.tweaking) {
+    kept_.tweaking->compare = [this](const std::string& what) { guarded([&] { choose_against(what); }); };
+  }
+  if (sweep_) {
+    thumbnail_images_.assign(sweep_->values().size(), 0);
+    chart_stale_ = true;
+  }
   if (!bookmarks_.trouble().empty()) say(bookmarks_.trouble(), true);
+  if (!kept_.trouble.empty()) {
+    say(fmt::format("the window's graphics context failed ({}); this is a new window with the same state",
+                    kept_.trouble),
+        true);
+  }
   listen();
   glfwGetFramebufferSize(window_.handle(), &framebuffer_width_, &framebuffer_height_);
   desk_->resized();
@@ -76,7 +112,6 @@ App::App(const ViewerOptions& options)
 }
 
 App::~App() {
-  sweep_.reset();
   desk_ = nullptr;  // NanoVG's objects go before the context
 }
 
@@ -151,7 +186,8 @@ std::string App::status() const {
     const std::string& error = workspace_.shader_error();
     return "the last good shaders go on: " + error.substr(0, error.find('\n'));
   }
-  if (!workspace_.trouble().empty()) return workspace_.trouble() + (shown_[0] ? " (the picture is the last one)" : "");
+  if (const std::string trouble = workspace_.trouble(); !trouble.empty())
+    return trouble + (shown_[0] ? " (the picture is the last one)" : "");
   if (const std::string phase = workspace_.phase(); !phase.empty()) return phase;
   const auto& picture = shown_[0];
   if (!picture) return "starting the renderer";
@@ -190,8 +226,7 @@ void App::show_pictures() {
   }
   if (second_.poll()) {
     changed = true;
-    if (journal_.on() && second_.image())
-      journal_.write({{"event", "second"}, {"width", second_.image()->width}, {"words", second_.words()}});
+    journal_second();
   }
   if (auto found = flip_.take()) {
     flip_result_ = std::move(*found);
@@ -234,13 +269,7 @@ void App::watch_files() {
 }
 
 void App::tweak() {
-  if (!tweaks_) return;
-  if (const std::string words = RandomTweaks::disagreement(workspace_); !words.empty()) {
-    ++disagreements_;
-    fault_ = words;
-  }
-  tweaks_->step(workspace_);
-  if (glfwGetTime() - began_s_ > options_.tweak_seconds) glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE);
+  if (kept_.tweaking && !kept_.tweaking->turn(workspace_)) glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE);
 }
 
 void App::tick() {
@@ -251,9 +280,8 @@ void App::tick() {
   play();
   tweak();
   follow_window();
-  if (measuring_ && !workspace_.busy()) workspace_.ask();
   follow_sweep();
-  if (workspace_.busy()) panel_dirty_ = true;  // the seconds count on
+  if (status() != drawn_status_) panel_dirty_ = true;  // the seconds count on
   if (!said_.empty() && glfwGetTime() - said_s_ >= kSaid_s) {
     said_.clear();
     panel_dirty_ = true;
@@ -267,6 +295,7 @@ void App::draw() {
     zoom_.fit(at, shown_[0]->image.width, shown_[0]->image.height, effective_display().mode);
   if (panel_dirty_) {
     panel_.update();
+    drawn_status_ = status();
     layer_.begin(framebuffer_width_, framebuffer_height_);
     desk_->draw_all();
     PanelLayer::end();
@@ -294,6 +323,7 @@ void App::write_journal(const Region& at) {
                   {"scale", zoom_.scale},
                   {"left", zoom_.left},
                   {"top", zoom_.top},
+                  {"mode", compare_mode_name()},
                   {"generation", shown_[0] ? shown_[0]->generation : 0}});
 }
 
@@ -301,48 +331,86 @@ std::optional<double> App::next_wake_s() const {
   if (!flying_.empty() || playing_) return 1.0 / 60;
   if (workspace_.busy() || second_.busy() || sweep_) return 0.25;
   if (blink_) return 0.1;
-  if (tweaks_) return 0.02;
+  if (kept_.tweaking) return 0.02;
   std::optional<double> due;
   if (const double hint = desk_->hint_due_s(); hint > 0) due = hint + 0.01;
   if (!said_.empty()) due = std::min(due.value_or(kSaid_s), std::max(0.01, said_s_ + kSaid_s - glfwGetTime()));
   return due;
 }
 
-int App::run() {
-  bool hint_was_due = false;
-  began_s_ = glfwGetTime();
-  while (!window_.should_close()) {
-    gl::Window::wait_events(panel_dirty_ || picture_dirty_ ? std::optional(0.0) : next_wake_s());
-    tick();
-    const bool hint_due = desk_->hint_due_s() <= 0;
-    panel_dirty_ = panel_dirty_ || (hint_due && !hint_was_due);
-    hint_was_due = hint_due;
-    if (panel_dirty_ || picture_dirty_) {
-      draw();
-      if (redraws_ > 0) {
-        --redraws_;
-        picture_dirty_ = true;
-      }
+bool App::draw_or_give_up() {
+  try {
+    draw();
+    if (gl::Window::context_lost()) throw RuntimeError("the device was reset");
+    if (options_.lose_context_at > 0 && options_.lose_context_at == workspace_.pictures_seen() && kept_.windows == 1)
+      throw RuntimeError("as --lose-context-at asks for");
+    ++drawings_;
+    return true;
+  } catch (const RuntimeError& e) {
+    // A window that cannot draw at all would follow upon itself for ever.
+    if (drawings_ == 0) throw;
+    kept_.trouble = e.what();
+    return false;
+  }
+}
+
+// A frame that comes within a moment is drawn together with the panel: else the two share the processor, where that
+// rasterises, and the frame comes later.
+bool App::holds_back() {
+  const double now = glfwGetTime();
+  if (!workspace_.busy() || !shown_[0] || (held_since_s_ >= 0 && now - held_since_s_ > kHeldBack_s)) {
+    held_since_s_ = -1;
+    return false;
+  }
+  if (held_since_s_ < 0) held_since_s_ = now;
+  return true;
+}
+
+bool App::turn(std::optional<double> longest_s) {
+  const bool dirty = panel_dirty_ || picture_dirty_;
+  gl::Window::wait_events(held_since_s_ >= 0 ? std::optional(kHeldBack_s / 4) : dirty ? std::optional(0.0) : longest_s);
+  tick();
+  const bool hint_due = desk_->hint_due_s() <= 0;
+  panel_dirty_ = panel_dirty_ || (hint_due && !hint_was_due_);
+  hint_was_due_ = hint_due;
+  if ((panel_dirty_ || picture_dirty_) && !holds_back()) {
+    if (!draw_or_give_up()) return false;
+    if (redraws_ > 0) {
+      --redraws_;
+      picture_dirty_ = true;
     }
   }
-  if (tweaks_) {
-    fmt::print(stderr, "{} tweaks, {} pictures, {} of another state than the panel's{}\n", tweaks_->steps(),
-               workspace_.pictures_seen(), disagreements_, fault_.empty() ? "" : ": " + fault_);
-    journal_.write({{"event", "tweaks"},
-                    {"steps", tweaks_->steps()},
-                    {"pictures", workspace_.pictures_seen()},
-                    {"disagreements", disagreements_},
-                    {"fault", fault_}});
-  }
-  return disagreements_ > 0 ? 1 : 0;
+  // After the window's own drawing, which would share the processor with the frame.
+  if (measuring_ && !workspace_.busy()) workspace_.ask();
+  return true;
+}
+
+std::optional<int> App::run() {
+  if (options_.measure) return measure();
+  while (!window_.should_close())
+    if (!turn(next_wake_s())) return std::nullopt;
+  if (!kept_.tweaking) return 0;
+  const nlohmann::json report = kept_.tweaking->report(workspace_);
+  fmt::print(stderr, "{}\n", report.dump(2));
+  journal_.write(report);
+  return kept_.tweaking->faultless() ? 0 : 1;
 }
 
 int run_viewer(const ViewerOptions& options) {
-  try {
-    return App(options).run();
-  } catch (const gl::NoDisplay& e) {
-    const std::string command = sweeps::shell_line(render_words(options.state, "picture.png"));
-    throw RuntimeError(fmt::format("{}; without one: {}", e.what(), command));
+  // A pipe or a file that takes no more is an error to be told, not the end of the program.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  Kept kept(options);
+  for (;;) {
+    try {
+      App app(kept);
+      if (const std::optional<int> status = app.run()) return *status;
+    } catch (const gl::NoDisplay& e) {
+      throw RuntimeError(fmt::format("{}; without one: {}", e.what(), state_as_command(kept)));
+    } catch (const RuntimeError& e) {
+      if (kept.windows < 2) throw;
+      throw RuntimeError(fmt::format("{}; the window's state: {}", e.what(), state_as_command(kept)));
+    }
   }
 }
 

@@ -12,20 +12,15 @@
 #include <vector>
 
 #include "gl/window.hpp"
-#include "sandbox/viewer/app/journal.hpp"
+#include "sandbox/viewer/app/kept.hpp"
 #include "sandbox/viewer/app/panel_view.hpp"
-#include "sandbox/viewer/app/viewer.hpp"
 #include "sandbox/viewer/compare/flip_job.hpp"
-#include "sandbox/viewer/compare/second.hpp"
-#include "sandbox/viewer/compare/statistics.hpp"
 #include "sandbox/viewer/display/panel_layer.hpp"
 #include "sandbox/viewer/display/picture_view.hpp"
 #include "sandbox/viewer/live/file_watch.hpp"
-#include "sandbox/viewer/live/sweep_here.hpp"
 #include "sandbox/viewer/out/tev_client.hpp"
 #include "sandbox/viewer/panel/controls.hpp"
 #include "sandbox/viewer/state/bookmarks.hpp"
-#include "sandbox/viewer/state/random_tweaks.hpp"
 
 namespace pellucid::sandbox {
 
@@ -37,9 +32,6 @@ struct Action {
   std::function<void()> run;
 };
 
-/// The surface that is drawn in place of the picture.
-enum class Layer { picture, flip, native };
-
 /// The times of one frame, for the graph.
 struct FrameFigures {
   double frame_ms = 0, shown_s = 0;
@@ -50,12 +42,13 @@ inline constexpr std::size_t kTimesKept = 120;
 /// The window: what it shows, and what its events do.
 class App {
  public:
-  explicit App(const ViewerOptions&);
+  explicit App(Kept&);
   ~App();
   App(const App&) = delete;
   App& operator=(const App&) = delete;
-  /// The exit status: 0, or 1 when random tweaking found a fault.
-  int run();
+  /// The exit status: 0, or 1 when random tweaking found a fault. Nothing when the graphics context failed
+  /// (Kept::trouble tells how): another window has to go on.
+  std::optional<int> run();
 
  private:
   // actions.cpp
@@ -81,9 +74,11 @@ class App {
   PanelPart compare_part();
   PanelPart live_part();
   void choose_against(const std::string&);
+  void journal_second();
   void next_mode();
   void set_mode(std::size_t mode);
   std::size_t compare_mode() const;
+  const std::string& compare_mode_name() const;
   void choose_layer(const std::string&);
   std::vector<std::string> layers() const;
   DisplaySettings effective_display() const;
@@ -95,7 +90,15 @@ class App {
   void add_axis();
   void go_to_bookmark(const std::string&);
   void keep_bookmark();
-  void copy_picture();
+  void copy_picture(const std::string& extension);
+  // measure.cpp
+  int measure();
+  double until(const char* what, const std::function<bool()>& reached);
+  bool shows_the_state() const;
+  std::pair<double, double> measure_frames();
+  std::vector<double> measure_typing();
+  std::vector<double> measure_saving();
+  double measure_idling();
   // overlays.cpp
   void paint_over(NVGcontext*, float x, float y, float w, float h);
   void paint_scale(NVGcontext*, float x, float y, float w, float h) const;
@@ -106,6 +109,9 @@ class App {
   // app.cpp
   void tick();
   void draw();
+  bool draw_or_give_up();
+  bool holds_back();
+  bool turn(std::optional<double> longest_s);  ///< of the loop; false when the graphics context failed
   void write_journal(const Region&);
   void show_pictures();
   void follow_window();
@@ -121,22 +127,27 @@ class App {
   void guarded(const std::function<void()>&);
   Region region() const;
 
-  ViewerOptions options_;
+  Kept& kept_;
+  ViewerOptions& options_;
   gl::Window window_;
   nanogui::ref<Desk> desk_;
   PictureView pictures_;
   PanelLayer layer_;
-  Workspace workspace_;
-  Second second_;
+  Workspace& workspace_;
+  Second& second_;
   FlipJob flip_;
   PanelView panel_;
-  Journal journal_;
-  DisplaySettings display_;
-  Zoom zoom_;
+  Journal& journal_;
+  DisplaySettings& display_;
+  Zoom& zoom_;
   SliderBar* exposure_ = nullptr;
   std::vector<Action> actions_;
 
   bool panel_dirty_ = true, picture_dirty_ = true;
+  int drawings_ = 0;  ///< that went well
+  bool hint_was_due_ = false;
+  double held_since_s_ = -1;  ///< a drawing is held back; negative: none is
+  std::string drawn_status_;
   int redraws_ = 0;  ///< drawings that are still due after the window has a new size
   std::array<std::shared_ptr<const Picture>, 2> shown_{};
   int framebuffer_width_ = 0, framebuffer_height_ = 0;
@@ -145,13 +156,15 @@ class App {
   bool drags_wipe_ = false;
 
   // comparing
-  bool blink_ = false, layer_changed_ = false, layer_shown_ = false;
-  Layer layer_kind_ = Layer::picture;
-  std::string native_map_, scale_words_;
+  bool& blink_;
+  bool layer_changed_ = false, layer_shown_ = false;
+  Layer& layer_kind_;
+  std::string& native_map_;
+  std::string scale_words_;
   double scale_end_ = 1;
   std::optional<FlipResult> flip_result_;
   std::shared_ptr<const Image> flip_asked_a_, flip_asked_b_;
-  PixelBox box_;
+  PixelBox& box_;
   Choice* against_choice_ = nullptr;
   Choice* technique_b_choice_ = nullptr;
   Choice* mode_choice_ = nullptr;
@@ -167,7 +180,7 @@ class App {
   std::deque<FrameFigures> times_;
 
   // sweep here
-  std::unique_ptr<SweepHere> sweep_;
+  std::unique_ptr<SweepHere>& sweep_;
   int chart_image_ = 0, chart_width_ = 0, chart_height_ = 0;
   std::vector<int> thumbnail_images_;
   bool chart_stale_ = false;
@@ -177,10 +190,6 @@ class App {
   Bookmarks bookmarks_;
   std::unique_ptr<TevClient> tev_;
   std::unique_ptr<FileWatch> shader_watch_;
-  std::optional<RandomTweaks> tweaks_;
-  double began_s_ = 0;
-  std::string fault_;
-  std::size_t disagreements_ = 0;
   std::set<int> flying_;  ///< keys held
   double flown_s_ = 0;
   bool playing_ = false;

@@ -29,6 +29,11 @@ const std::vector<std::string> kModes{"A alone", "B alone", "side by side", "wip
 
 }  // namespace
 
+void App::journal_second() {
+  if (journal_.on() && second_.image())
+    journal_.write({{"event", "second"}, {"width", second_.image()->width}, {"words", second_.words()}});
+}
+
 void App::choose_against(const std::string& what) {
   if (what == kNothing || what.empty()) {
     second_.choose(Against::nothing);
@@ -40,6 +45,7 @@ void App::choose_against(const std::string& what) {
     second_.choose(Against::reference);
   } else if (what.ends_with(".exr") || what.ends_with(".png")) {
     second_.choose(Against::file, what);
+    journal_second();
   } else {
     workspace_.set_technique(Side::b, std::string(find_technique(what).name));
     second_.choose(Against::technique);
@@ -51,6 +57,10 @@ void App::choose_against(const std::string& what) {
 
 std::size_t App::compare_mode() const {
   return blink_ ? 4 : display_.mode == CompareMode::difference ? 5 : static_cast<std::size_t>(display_.mode);
+}
+
+const std::string& App::compare_mode_name() const {
+  return kModes[compare_mode()];
 }
 
 void App::set_mode(std::size_t mode) {

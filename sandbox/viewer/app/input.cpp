@@ -51,6 +51,7 @@ void App::listen() {
     app.panel_dirty_ = true;
     if (action == GLFW_RELEASE) app.flying_.erase(key);
     app.guarded([&] { app.desk_->key_pressed(key, scancode, action, modifiers); });
+    app.journal_.focus(*app.desk_);  // several keys may come before the next drawing
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned codepoint) {
     App& app = *app_of(w);
@@ -63,6 +64,13 @@ void App::listen() {
     app.framebuffer_height_ = std::max(1, height);
     app.desk_->resized();
     app.redraws_ = kRedrawsAfterResize;
+    app.panel_dirty_ = app.picture_dirty_ = true;
+  });
+  glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) {
+    // The window went to another monitor.
+    App& app = *app_of(w);
+    if (app.options_.ui_scale) return;
+    app.desk_->set_ui_scale(app.window_.content_scale());
     app.panel_dirty_ = app.picture_dirty_ = true;
   });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { app_of(w)->panel_dirty_ = true; });

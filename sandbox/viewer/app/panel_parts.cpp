@@ -102,7 +102,8 @@ PanelPart App::out_part() {
            [this] { guarded([&] { save(".exr"); }); });
     button(files, "Save PNG", "As displayed (Ctrl+Shift+S).", [this] { guarded([&] { save(".png"); }); });
     auto* clip = new Bar(section->body());
-    button(clip, "Copy picture", "As PNG (Ctrl+C); needs xclip.", [this] { guarded([&] { copy_picture(); }); });
+    button(clip, "Copy picture", "As PNG (Ctrl+C), with Ctrl+Shift+C as EXR; needs xclip.",
+           [this] { guarded([&] { copy_picture(".png"); }); });
     button(clip, "Copy command", "The command line that renders this picture (C).", [this] { copy_command(); });
     auto* marks = new Bar(section->body(), "Bookmark");
     auto* bookmark = new Choice(marks);

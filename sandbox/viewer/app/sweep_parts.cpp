@@ -14,10 +14,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "sandbox/viewer/app/app.hpp"
 #include "sandbox/viewer/app/save.hpp"
-#include "sweeps/workers/process.hpp"
+#include "sandbox/viewer/out/clipboard.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -154,9 +155,7 @@ void App::add_axis() {
     }
     text.insert(text.find(head) + head.size(), line + "\n");
   }
-  std::ofstream out(path);
-  out << text;
-  if (!out.flush()) throw RuntimeError(fmt::format("cannot write {}", path.string()));
+  write_text_file(path, text);
   journal_.write({{"event", "axis"}, {"path", path.string()}, {"line", line}});
   say(fmt::format("{}: {}", path.string(), line));
 }
@@ -175,18 +174,22 @@ void App::keep_bookmark() {
   say(fmt::format("kept as '{}'; it is in the section Out", name));
 }
 
-void App::copy_picture() {
+void App::copy_picture(const std::string& extension) {
   if (!shown_[0]) return say("there is no picture to copy yet", true);
-  const auto path = std::filesystem::temp_directory_path() / fmt::format("pellucid_clipboard_{}.png", ::getpid());
-  save_picture(*shown_[0], path, {options_.display, options_.display_view, display_.exposure_ev, options_.look});
-  // GLFW's clipboard knows text alone. xclip reads the file at once and serves it from the background.
-  const sweeps::ProcessResult done =
-      sweeps::run_process({"xclip", "-selection", "clipboard", "-t", "image/png", "-i", path.string()});
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("pellucid_clipboard_{}{}", ::getpid(), extension);
+  std::string trouble;
+  try {
+    save_picture(*shown_[0], path, {options_.display, options_.display_view, display_.exposure_ev, options_.look});
+    copy_file_to_clipboard(path, extension == ".exr" ? "image/x-exr" : "image/png");
+  } catch (const RuntimeError& e) {
+    trouble = e.what();
+  }
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
-  if (done.status == 127) throw RuntimeError("copying pictures needs the program xclip");
-  if (done.status != 0) throw RuntimeError(fmt::format("xclip: {}", done.diagnostics));
-  say("copied the picture as PNG");
+  if (!trouble.empty()) throw RuntimeError(trouble);
+  journal_.write({{"event", "copied"}, {"text", extension}});
+  say(fmt::format("copied the picture as {}", extension == ".exr" ? "EXR" : "PNG"));
 }
 
 }  // namespace pellucid::sandbox

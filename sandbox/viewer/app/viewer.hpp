@@ -24,7 +24,9 @@ struct ViewerOptions {
   std::string tev;                             ///< HOST:PORT; empty: none
   std::optional<std::uint64_t> random_tweaks;  ///< seed
   double tweak_seconds = 60;
-  std::filesystem::path log;  ///< what the window shows, as JSON lines; empty: none
+  bool measure = false, json = false;  ///< measures itself and prints the figures
+  std::uint64_t lose_context_at = 0;   ///< for tests: after so many pictures the context counts as lost; 0: never
+  std::filesystem::path log;           ///< what the window shows, as JSON lines; empty: none
 };
 
 /// Opens the window and runs until it is closed. Throws RuntimeError when there is no display.

@@ -57,7 +57,13 @@ void Second::ask_reference() {
   reference_->ask({.generation = ++generation_,
                    .state = state,
                    .maps = false,
+                   .counts = false,
+                   .scene = false,
                    .reference = {{1, 4}, {1, 1}, {4, 1}, {16, 1}, {64, 1}}});
+}
+
+void Second::again() {
+  if (!trouble_.empty()) asked_.reset();
 }
 
 bool Second::poll() {

@@ -26,6 +26,8 @@ class Second {
   const std::filesystem::path& file() const { return file_; }
   /// Takes what has come, and asks for the truth of another scene or view; true when the image is another one.
   bool poll();
+  /// A reference whose renderer has failed is traced again.
+  void again();
   /// Null while there is none.
   const std::shared_ptr<const Image>& image() const { return image_; }
   /// A name, and how far it has converged.

@@ -12,6 +12,7 @@
 
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/technique.hpp"
+#include "gl/live_objects.hpp"
 #include "sandbox/viewer/state/view_state.hpp"
 
 /// The renderer's messages to the window (render_worker.hpp).
@@ -33,6 +34,9 @@ struct Picture {
   /// For a reference: how far it has converged, in words; empty for a technique's frame.
   std::string quality;
   bool converged = true;
+  /// The renderer's GL objects where they were asked for, and those that the session before this left behind.
+  gl::LiveObjects objects;
+  std::string objects_left;
 };
 
 /// The facts about a scene that has been loaded.
@@ -45,6 +49,7 @@ struct LoadedScene {
 struct PhaseEvent {
   std::uint64_t generation = 0;
   std::string words;
+  double share = -1;  ///< done so far, 0 to 1; negative where nobody knows
 };
 struct SceneEvent {
   std::uint64_t generation = 0;
@@ -56,6 +61,7 @@ struct PictureEvent {
 struct RefusedEvent {  ///< a state that cannot be drawn; the last picture stays
   std::uint64_t generation = 0;
   std::string reason;
+  bool failed = false;  ///< not the state's fault but the program's or the driver's; another renderer draws the next
 };
 struct ShadersEvent {
   std::string error;  ///< the compiler's words, empty when all is well

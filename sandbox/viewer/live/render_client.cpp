@@ -1,12 +1,18 @@
 #include "sandbox/viewer/live/render_client.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
+#include <cstring>
 #include <exception>
 #include <utility>
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include "gl/error.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"
@@ -78,21 +84,32 @@ Picture picture_of(const json& message, const SharedPixels& memory) {
   picture.device = message.at("device");
   picture.driver = message.at("driver");
   picture.quality = message.value("quality", "");
+  picture.objects = message.value("objects", gl::LiveObjects{});
+  picture.objects_left = message.value("objects_left", "");
   return picture;
 }
 
 }  // namespace
 
 RenderClient::RenderClient(std::optional<int> device, std::function<void()> wake)
-    : device_(device), wake_(std::move(wake)), thread_([this] { work(); }) {}
+    : device_(device), wake_(std::move(wake)), bell_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (bell_ < 0) throw RuntimeError(fmt::format("no renderer can be started: {}", std::strerror(errno)));
+  thread_ = std::thread([this] { work(); });
+}
 
 RenderClient::~RenderClient() {
   {
     const std::scoped_lock lock(mutex_);
     stop_ = true;
   }
-  changed_.notify_all();
+  ring();
   thread_.join();
+  ::close(bell_);
+}
+
+void RenderClient::ring() const {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = ::write(bell_, &one, sizeof one);
 }
 
 void RenderClient::ask(RenderRequest request) {
@@ -101,7 +118,7 @@ void RenderClient::ask(RenderRequest request) {
     waiting_ = std::move(request);
     overtaken_ = true;
   }
-  changed_.notify_all();
+  ring();
 }
 
 void RenderClient::reload_shaders() {
@@ -109,7 +126,7 @@ void RenderClient::reload_shaders() {
     const std::scoped_lock lock(mutex_);
     reload_ = true;
   }
-  changed_.notify_all();
+  ring();
 }
 
 void RenderClient::cancel() {
@@ -117,6 +134,11 @@ void RenderClient::cancel() {
   waiting_.reset();
   reload_ = false;
   cancelled_ = running_;
+}
+
+void RenderClient::renew() {
+  const std::scoped_lock lock(mutex_);
+  renew_ = true;
 }
 
 std::vector<RenderEvent> RenderClient::take() {
@@ -137,20 +159,47 @@ void RenderClient::put(RenderEvent event) {
   wake_();
 }
 
+// Sleeps until there is something to do. A renderer that ends meanwhile is told at once, not with the next request.
+void RenderClient::rest() {
+  for (;;) {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (stop_ || waiting_ || reload_) return;
+    }
+    std::array<pollfd, 2> files{pollfd{bell_, POLLIN, 0}, pollfd{process_ ? process_->output() : -1, POLLIN, 0}};
+    ::poll(files.data(), files.size(), -1);
+    if (files[0].revents != 0) {
+      std::uint64_t rings = 0;
+      [[maybe_unused]] const ssize_t taken = ::read(bell_, &rings, sizeof rings);
+    }
+    if (files[1].revents == 0) continue;
+    const auto received = process_->receive(std::chrono::steady_clock::now(), [] { return true; });
+    if (received.event == sweeps::WorkerProcess::Event::ended) end_process(served_);
+  }
+}
+
 void RenderClient::work() {
   for (;;) {
     std::optional<RenderRequest> request;
-    bool reload = false;
+    bool reload = false, renew = false;
     {
-      std::unique_lock lock(mutex_);
+      const std::scoped_lock lock(mutex_);
       running_ = false;
       cancelled_ = false;
-      changed_.wait(lock, [&] { return stop_ || waiting_ || reload_; });
+    }
+    rest();
+    {
+      const std::scoped_lock lock(mutex_);
       if (stop_) break;
       reload = std::exchange(reload_, false);
+      renew = std::exchange(renew_, false);
       request = std::exchange(waiting_, std::nullopt);
       overtaken_ = false;
       running_ = true;
+    }
+    if (renew) {
+      process_.reset();
+      pid_ = 0;
     }
     if (reload && process_ && process_->alive()) exchange(sweeps::to_line({{"type", "reload"}}), 0);
     if (reload && !process_) put(ShadersEvent{});
@@ -165,7 +214,10 @@ void RenderClient::serve(const RenderRequest& request) {
                {"generation", request.generation},
                {"recipe", to_recipe(request.state)},
                {"memory", memory_.path()},
-               {"maps", request.maps}};
+               {"maps", request.maps},
+               {"counts", request.counts},
+               {"scene", request.scene}};
+  served_ = request.generation;
   if (request.reference.empty()) {
     last_stage_ = true;
     exchange(sweeps::to_line(message), request.generation);
@@ -213,6 +265,11 @@ bool RenderClient::exchange(const std::string& line, std::uint64_t generation) {
     }
   }
   if (open) return true;
+  end_process(generation);
+  return false;
+}
+
+void RenderClient::end_process(std::uint64_t generation) {
   const bool asked_to = interrupted();
   const std::string how = process_->end();
   const std::string words = process_->last_words();
@@ -220,14 +277,13 @@ bool RenderClient::exchange(const std::string& line, std::uint64_t generation) {
   pid_ = 0;
   put(EndedEvent{generation,
                  asked_to ? "" : fmt::format("the renderer {}{}{}", how, words.empty() ? "" : ": ", words)});
-  return false;
 }
 
 void RenderClient::hear(const std::string& line) {
   const json message = json::parse(line);
   const std::string type = message.at("type");
   if (type == "phase") {
-    put(PhaseEvent{message.at("generation"), message.at("words")});
+    put(PhaseEvent{message.at("generation"), message.at("words"), message.value("share", -1.0)});
   } else if (type == "scene") {
     put(scene_event(message));
   } else if (type == "picture") {
@@ -236,8 +292,14 @@ void RenderClient::hear(const std::string& line) {
     put(PictureEvent{std::move(picture)});
     answered_ = true;
   } else if (type == "refused") {
-    put(RefusedEvent{message.at("generation"), message.at("reason")});
+    const bool failed = message.value("failed", false);
+    put(RefusedEvent{message.at("generation"), message.at("reason"), failed});
     answered_ = refused_ = true;
+    if (failed) {
+      // Nothing is known of its context any more: the next request is drawn in another.
+      process_.reset();
+      pid_ = 0;
+    }
   } else if (type == "shaders") {
     put(ShadersEvent{message.at("error")});
     answered_ = true;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -21,7 +20,9 @@ namespace pellucid::sandbox {
 struct RenderRequest {
   std::uint64_t generation = 0;
   ViewState state;
-  bool maps = false;  ///< native errors too, as numbers and maps
+  bool maps = false;    ///< native errors too, as numbers and maps
+  bool counts = false;  ///< the renderer's GL objects, for searching leaks
+  bool scene = false;   ///< the facts about the scene too, even when the renderer has it already
   /// A technique's frame, or the truth: at each (rays per pixel, divisor of the size) in turn, ever better.
   struct Stage {
     int samples = 1, divide = 1;
@@ -43,6 +44,8 @@ class RenderClient {
   void reload_shaders();
   /// Drops what waits and what runs: the process is killed, whatever it is at.
   void cancel();
+  /// The next request is drawn by another process.
+  void renew();
   std::vector<RenderEvent> take();
   bool busy() const;
   /// The id of the process that draws; 0 when there is none.
@@ -50,10 +53,13 @@ class RenderClient {
 
  private:
   void work();
+  void rest();
+  void ring() const;
   void serve(const RenderRequest&);
   bool exchange(const std::string& line, std::uint64_t generation);  // false: the process is gone, or cancelled
   bool start(std::uint64_t generation);
   void hear(const std::string& line);
+  void end_process(std::uint64_t generation);
   void put(RenderEvent);
   bool interrupted() const { return stop_ || cancelled_; }
 
@@ -62,11 +68,12 @@ class RenderClient {
   SharedPixels memory_;
   std::unique_ptr<sweeps::WorkerProcess> process_;  // the thread's own
   bool answered_ = false, refused_ = false;         // the thread's own
+  std::uint64_t served_ = 0;                        // the thread's own
 
+  int bell_ = -1;  ///< wakes the thread
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
   std::optional<RenderRequest> waiting_;
-  bool reload_ = false, running_ = false;
+  bool reload_ = false, renew_ = false, running_ = false;
   std::atomic<bool> stop_ = false, cancelled_ = false, overtaken_ = false;
   std::atomic<int> pid_ = 0;
   std::vector<RenderEvent> events_;

@@ -1,23 +1,28 @@
 #include "sandbox/viewer/live/render_worker.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <iostream>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/progress.hpp"
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
+#include "gl/live_objects.hpp"
 #include "sandbox/viewer/live/shared_pixels.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"
 #include "sandbox/viewer/state/view_state.hpp"
@@ -40,14 +45,19 @@ json triple_json(const glm::vec3& v) {
 
 class RenderWorker {
  public:
-  explicit RenderWorker(const gl::Context& context) : context_(context) {}
+  explicit RenderWorker(const gl::Context& context) : context_(context), first_objects_(gl::count_live_objects()) {}
 
   void render(const json& request) {
     generation_ = request.at("generation");
     const ViewState state = from_recipe(request.at("recipe"), "recipe");
-    follow(state);
+    counts_ = request.value("counts", false);
+    follow(state, request.value("scene", false));
     if (precompute_) phase("precomputing");
-    const double prepare_s = session_->prepare();
+    const double prepare_s = [&] {
+      const ProgressListener listener(
+          [this](std::string_view work, double share) { progress(fmt::format("precomputing, {}", work), share); });
+      return session_->prepare();
+    }();
     precompute_ = false;
     gl::PassTimer timer(gl::Detail::passes);
     session_->render(timer);
@@ -67,6 +77,10 @@ class RenderWorker {
     if (request.value("maps", false)) {
       session_->technique().native_errors(answer["native_errors"]);
       maps = session_->technique().native_maps();
+    }
+    if (counts_) {
+      answer["objects"] = gl::count_live_objects();
+      answer["objects_left"] = objects_left_;
     }
     answer["maps"] = json::array();
     for (const NativeMap& map : maps) {
@@ -88,14 +102,17 @@ class RenderWorker {
     const int divide = request.at("divide");
     state.width = std::max(1, state.width / divide);
     state.height = std::max(1, state.height / divide);
-    follow(state);
+    follow(state, false);
     phase("tracing the reference");
     Scene& scene = session_->scene();
     sweeps::ReferenceSettings settings;
     settings.samples = has_interfaces(scene) ? request.at("samples").get<int>() : 1;
     settings = sweeps::settled(settings, scene.name, has_interfaces(scene), scene.volume.has_value());
-    const SurfaceLayer surfaces = sweeps::reference_surfaces(*session_, settings);
-    const Reference exact = render_reference(scene, session_->camera(), surfaces, {});
+    const std::string work = "tracing the reference";
+    ReferenceOptions options;
+    options.progress = [&](double share) { progress(work, share); };
+    const SurfaceLayer surfaces = sweeps::reference_surfaces(*session_, settings, options.progress);
+    const Reference exact = render_reference(scene, session_->camera(), surfaces, options);
     json answer = picture(exact.image);
     answer["quality"] = settings.surfaces == sweeps::ReferenceSurfaces::rays
                             ? fmt::format("{} rays per pixel, standard error {:.2g}", settings.samples,
@@ -108,11 +125,18 @@ class RenderWorker {
   void reload() { tell({{"type", "shaders"}, {"error", session_ ? session_->reload_shaders() : std::string{}}}); }
 
   std::uint64_t generation() const { return generation_; }
-  /// After a failure nothing is known of the session's state.
-  void forget() { session_.reset(); }
 
  private:
   void phase(const std::string& words) { tell({{"type", "phase"}, {"generation", generation_}, {"words", words}}); }
+
+  // A few times a second; from any thread.
+  void progress(const std::string& words, double share) {
+    const std::scoped_lock lock(telling_);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told_ < std::chrono::milliseconds(100)) return;
+    told_ = now;
+    tell({{"type", "phase"}, {"generation", generation_}, {"words", words}, {"share", share}});
+  }
 
   json picture(const Image& image) {
     json recipe = to_recipe({session_scene_,
@@ -135,14 +159,19 @@ class RenderWorker {
   }
 
   // Brings the session to `state` with as little work as it can.
-  void follow(const ViewState& state) {
+  void follow(const ViewState& state, bool tell_facts) {
+    const bool has_scene = session_ && session_scene_ == state.scene;
+    if (has_scene && tell_facts) tell_scene(state.scene, session_->scene());
     if (!session_ || session_scene_ != state.scene || session_->technique_info().name != state.technique) {
       // A wrong name is told before the scene loads.
       find_technique(state.technique);
       phase(fmt::format("loading {}", state.scene));
-      session_.reset();
+      if (session_) {
+        session_.reset();
+        if (counts_) objects_left_ = gl::growth(first_objects_, gl::count_live_objects());
+      }
       Scene scene = load_scene(state.scene);
-      tell_scene(state.scene, scene);
+      if (!has_scene || !tell_facts) tell_scene(state.scene, scene);
       phase("compiling shaders");
       session_.emplace(std::move(scene), state.technique, state.view, state.width, state.height);
       session_scene_ = state.scene;
@@ -212,7 +241,12 @@ class RenderWorker {
   std::string session_scene_;
   std::map<std::string, Assigned> assigned_;
   bool precompute_ = false;
+  bool counts_ = false;
+  gl::LiveObjects first_objects_;  // before the first session
+  std::string objects_left_;       // more than those, after the last one
   std::uint64_t generation_ = 0;
+  std::mutex telling_;
+  std::chrono::steady_clock::time_point told_{};
 };
 
 }  // namespace
@@ -235,8 +269,8 @@ int run_render_worker(std::optional<int> device) {
     } catch (const InputError& e) {
       tell({{"type", "refused"}, {"generation", worker.generation()}, {"reason", e.what()}});
     } catch (const std::exception& e) {
-      worker.forget();
-      tell({{"type", "refused"}, {"generation", worker.generation()}, {"reason", e.what()}});
+      tell({{"type", "refused"}, {"generation", worker.generation()}, {"reason", e.what()}, {"failed", true}});
+      return 1;
     }
   }
   return 0;

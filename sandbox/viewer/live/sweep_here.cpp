@@ -6,13 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <fstream>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/chart.hpp"
 #include "sandbox/viewer/app/save.hpp"
@@ -119,11 +119,7 @@ SweepHere::SweepHere(const ViewState& state, const std::string& parameter, const
   std::replace(name.begin(), name.end(), '.', '_');
   spec_ = free_name(folder, name, ".toml");
   store_ = std::filesystem::path(spec_).replace_extension(".db");
-  {
-    std::ofstream file(spec_);
-    file << sweep_spec(state_, parameter_, values_, name);
-    if (!file.flush()) throw RuntimeError(fmt::format("cannot write {}", spec_.string()));
-  }
+  write_text_file(spec_, sweep_spec(state_, parameter_, values_, name));
   std::vector<std::string> command{"/proc/self/exe", "sweep",         "run",    spec_.string(),
                                    "--store",        store_.string(), "--quiet"};
   if (device) command.push_back(fmt::format("--device={}", *device));
@@ -152,7 +148,8 @@ void SweepHere::ask_thumbnail() {
   small.height = std::max(1, kThumbnailWidth * state_.height / state_.width);
   small.width = kThumbnailWidth;
   small.parameters[parameter_] = values_[asked_];
-  renderer_->ask({.generation = asked_++, .state = small, .maps = false, .reference = {}});
+  renderer_->ask(
+      {.generation = asked_++, .state = small, .maps = false, .counts = false, .scene = false, .reference = {}});
 }
 
 bool SweepHere::poll() {

@@ -76,7 +76,10 @@ void Bar::draw(NVGcontext* ctx) {
 
 class Section::Headline : public Control {
  public:
-  Headline(nanogui::Widget* parent, Section& section) : Control(parent), section_(section) {}
+  Headline(nanogui::Widget* parent, Section& section) : Control(parent), section_(section) {
+    setId("headline " + section.title());
+    set_hint("Folds or unfolds this section.");
+  }
   bool mouseButtonEvent(const Vector2i&, int button, bool down, int) override {
     if (button != GLFW_MOUSE_BUTTON_1) return false;
     if (down) {

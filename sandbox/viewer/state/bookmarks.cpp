@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "algorithms/scene/files/atomic_file.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::sandbox {
@@ -76,24 +77,21 @@ void Bookmarks::remove(const std::string& name) {
 void Bookmarks::save(const std::vector<Bookmark>& next) {
   std::error_code error;
   fs::create_directories(file_.parent_path(), error);
+  json list = json::array();
+  for (const Bookmark& bookmark : next)
+    list.push_back({{"name", bookmark.name}, {"recipe", to_recipe(bookmark.state)}});
+  const fs::path part = fmt::format("{}.part_{}", file_.string(), ::getpid());
+  write_text_file(part, json{{"version", kVersion}, {"bookmarks", list}}.dump(2) + "\n");
   if (!trouble_.empty() && fs::exists(file_, error)) {
     // A file that could not be read may still be mended by hand.
     fs::path aside = file_;
     for (int number = 1; fs::exists(aside, error); ++number)
       aside = fmt::format("{}.damaged_{}", file_.string(), number);
     fs::rename(file_, aside, error);
-    if (error) throw RuntimeError(fmt::format("cannot move {} aside: {}", file_.string(), error.message()));
-  }
-  json list = json::array();
-  for (const Bookmark& bookmark : next)
-    list.push_back({{"name", bookmark.name}, {"recipe", to_recipe(bookmark.state)}});
-  const fs::path part = fmt::format("{}.part_{}", file_.string(), ::getpid());
-  {
-    std::ofstream out(part);
-    out << json{{"version", kVersion}, {"bookmarks", list}}.dump(2) << '\n';
-    if (!out.flush()) {
+    if (error) {
+      const std::string why = error.message();
       fs::remove(part, error);
-      throw RuntimeError(fmt::format("cannot write {}", file_.string()));
+      throw RuntimeError(fmt::format("cannot move {} aside: {}", file_.string(), why));
     }
   }
   fs::rename(part, file_, error);

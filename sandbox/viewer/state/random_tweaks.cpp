@@ -18,8 +18,16 @@ const T& RandomTweaks::one_of(const std::vector<T>& all) {
   return all[std::uniform_int_distribution<std::size_t>(0, all.size() - 1)(random_)];
 }
 
-void RandomTweaks::parameter(Workspace& workspace) {
-  const std::vector<Workspace::Group> groups = workspace.groups(Side::a);
+std::string RandomTweaks::comparison() {
+  const double what = share();
+  if (what >= 0.04) return "";
+  if (what >= 0.02) return kNothing;
+  const auto& all = techniques();
+  return std::string(all[std::uniform_int_distribution<std::size_t>(0, all.size() - 1)(random_)].name);
+}
+
+void RandomTweaks::parameter(Workspace& workspace, Side side) {
+  const std::vector<Workspace::Group> groups = workspace.groups(side);
   const Workspace::Group& group = one_of(groups);
   if (group.infos.empty()) return;
   const ParameterInfo& info = one_of(group.infos);
@@ -43,24 +51,29 @@ void RandomTweaks::parameter(Workspace& workspace) {
       }
     }
   }
-  workspace.set(Side::a, group.prefix + info.name, value);
+  parameters_.insert(group.prefix.empty()       ? workspace.technique(side) + "." + info.name
+                     : group.prefix == "scene." ? workspace.scene() + "." + info.name
+                                                : group.prefix + info.name);
+  workspace.set(side, group.prefix + info.name, value);
 }
 
 void RandomTweaks::step(Workspace& workspace) {
   if (workspace.busy()) return;
   ++steps_;
+  techniques_.insert(workspace.technique(Side::a));
+  scenes_.insert(workspace.scene());
   const double what = share();
+  const std::vector<TechniqueInfo> all(techniques().begin(), techniques().end());
   try {
-    if (what < 0.02) {
+    if (what < 0.04) {
+      // Together with a technique, since few draw all scenes.
       std::vector<std::string> names;
       for (const SceneInfo& info : list_scenes())
         names.push_back(info.name);
       workspace.set_scene(one_of(names));
+      workspace.set_technique(Side::a, std::string(one_of(all).name));
     } else if (what < 0.08) {
-      std::vector<std::string> names;
-      for (const TechniqueInfo& info : techniques())
-        names.emplace_back(info.name);
-      workspace.set_technique(Side::a, one_of(names));
+      workspace.set_technique(Side::a, std::string(one_of(all).name));
     } else if (what < 0.14 && !workspace.views().empty()) {
       workspace.set_view(one_of(workspace.views()).name);
     } else if (what < 0.25) {
@@ -70,7 +83,7 @@ void RandomTweaks::step(Workspace& workspace) {
     } else if (what < 0.3) {
       workspace.set_size(32 + static_cast<int>(share() * 160), 24 + static_cast<int>(share() * 120));
     } else {
-      parameter(workspace);
+      parameter(workspace, workspace.shows_b() && share() < 0.3 ? Side::b : Side::a);
     }
   } catch (const InputError&) {
     // A refusal is an answer too.
@@ -78,18 +91,24 @@ void RandomTweaks::step(Workspace& workspace) {
 }
 
 std::string RandomTweaks::disagreement(const Workspace& workspace) {
-  const auto& picture = workspace.picture(Side::a);
-  if (!picture || workspace.stale(Side::a)) return "";
-  const ViewState state = workspace.state(Side::a);
+  for (const Side side : {Side::a, Side::b})
+    if (std::string words = disagreement(workspace, side); !words.empty()) return words;
+  return "";
+}
+
+std::string RandomTweaks::disagreement(const Workspace& workspace, Side side) {
+  const auto& picture = workspace.picture(side);
+  if (!picture || workspace.stale(side)) return "";
+  const ViewState state = workspace.state(side);
   if (picture->state.scene != state.scene) return "scene";
   if (picture->state.technique != state.technique) return "technique";
   if (!state.view.empty() && picture->state.view != state.view) return "view";
   if (picture->image.width != state.width || picture->image.height != state.height) return "size";
-  for (const Workspace::Group& group : workspace.groups(Side::a)) {
+  for (const Workspace::Group& group : workspace.groups(side)) {
     for (const ParameterInfo& info : group.infos) {
       const std::string name = group.prefix + info.name;
       const Value shown = checked(info, sweeps::value_from_json(picture->recipe.at("parameters").at(name)), name);
-      const Value panel = workspace.get(Side::a, name);
+      const Value panel = workspace.get(side, name);
       // Parameters are floats in the technique and doubles in the panel.
       const auto* a = std::get_if<double>(&shown);
       const auto* b = std::get_if<double>(&panel);

@@ -213,6 +213,7 @@ void Workspace::show_b(bool on) {
   if (!on) {
     client_[1].reset();
     picture_[1].reset();
+    trouble_[1].clear();
     return;
   }
   client_[1] = std::make_unique<RenderClient>(device_, wake_);
@@ -230,19 +231,30 @@ void Workspace::ask() {
   for (const Side side : {Side::a, Side::b}) {
     if (side == Side::b && !b_on_) continue;
     asked_[index(side)] = generation_;
-    client_[index(side)]->ask({.generation = generation_, .state = state(side), .maps = maps_, .reference = {}});
+    client_[index(side)]->ask({.generation = generation_,
+                               .state = state(side),
+                               .maps = maps_,
+                               .counts = counts_,
+                               .scene = side == Side::a && loaded_.scene != scene_,
+                               .reference = {}});
   }
+}
+
+void Workspace::renew() {
+  for (const auto& client : client_)
+    if (client) client->renew();
+  ask();
 }
 
 void Workspace::cancel() {
   for (const auto& client : client_)
     if (client) client->cancel();
   phase_.clear();
-  trouble_ = "cancelled";
+  trouble_[0] = "cancelled";
   if (const auto& shown = picture_[0]) {
     const ViewState back = shown->state;
     set_state(back);
-    trouble_ = "cancelled; this is the state before";
+    trouble_[0] = "cancelled; this is the state before";
   }
 }
 
@@ -263,7 +275,9 @@ bool Workspace::stale(Side side) const {
 std::string Workspace::phase() const {
   if (!busy() || phase_.empty()) return "";
   const double passed = now_s() - phase_began_s_;
-  return passed < 0.5 ? phase_ : fmt::format("{} … {:.0f} s (Esc cancels)", phase_, passed);
+  if (passed < 0.5) return phase_;
+  const std::string share = phase_share_ < 0 ? "" : fmt::format(" {:.0f} %", 100 * phase_share_);
+  return fmt::format("{}{} … {:.0f} s (Esc cancels)", phase_, share, passed);
 }
 
 std::vector<int> Workspace::pids() const {
@@ -271,6 +285,11 @@ std::vector<int> Workspace::pids() const {
   for (const auto& client : client_)
     if (client && client->pid() != 0) out.push_back(client->pid());
   return out;
+}
+
+std::string Workspace::trouble() const {
+  if (trouble_[0].empty() && !trouble_[1].empty()) return "B: " + trouble_[1];
+  return trouble_[0];
 }
 
 bool Workspace::poll() {
@@ -303,24 +322,32 @@ void Workspace::scene_loaded(const LoadedScene& loaded) {
 
 void Workspace::hear(Side side, const RenderEvent& event) {
   if (const auto* phase = std::get_if<PhaseEvent>(&event)) {
+    if (phase_ != phase->words) phase_began_s_ = now_s();
     phase_ = phase->words;
-    phase_began_s_ = now_s();
+    phase_share_ = phase->share;
   } else if (const auto* scene = std::get_if<SceneEvent>(&event)) {
     if (side == Side::a) scene_loaded(scene->loaded);
   } else if (const auto* picture = std::get_if<PictureEvent>(&event)) {
     picture_[index(side)] = picture->picture;
     ++pictures_seen_;
-    if (!stale(side)) trouble_.clear();
+    if (!stale(side)) trouble_[index(side)].clear();
     phase_.clear();
   } else if (const auto* refused = std::get_if<RefusedEvent>(&event)) {
-    if (refused->generation == asked_[index(side)]) trouble_ = refused->reason;
+    if (refused->generation == asked_[index(side)]) trouble_[index(side)] = refused->reason;
+    if (refused->failed) {
+      ++failures_;
+      last_failure_ = refused->reason;
+    }
     phase_.clear();
   } else if (const auto* shaders = std::get_if<ShadersEvent>(&event)) {
     shader_error_ = shaders->error;
     ask();
   } else if (const auto* ended = std::get_if<EndedEvent>(&event)) {
     phase_.clear();
-    if (!ended->reason.empty()) trouble_ = fmt::format("{}; F5 draws again, or change something", ended->reason);
+    if (ended->reason.empty()) return;
+    ++failures_;
+    last_failure_ = ended->reason;
+    trouble_[index(side)] = fmt::format("{}; F5 starts another with the same state", ended->reason);
   }
 }
 

@@ -56,8 +56,12 @@ class Workspace {
   void show_b(bool on);
   bool shows_b() const { return b_on_; }
   void want_maps(bool on);
+  /// The renderers count their GL objects from now on (Picture::objects).
+  void want_counts() { counts_ = true; }
   /// Draws both sides again; with a restart of a renderer that has ended.
   void ask();
+  /// Draws both sides again in renderers that have just started.
+  void renew();
   /// Kills what runs, and goes back to the state of the last picture.
   void cancel();
   void reload_shaders();
@@ -70,11 +74,16 @@ class Workspace {
   bool busy() const;
   /// The name of the job that runs: "precomputing", with the seconds that it takes already; empty when nothing does.
   std::string phase() const;
-  /// Why the state cannot be drawn; empty when it can.
-  const std::string& trouble() const { return trouble_; }
+  /// Why a side's state cannot be drawn; empty when it can.
+  const std::string& trouble(Side side) const { return trouble_[index(side)]; }
+  /// The same of either side, A first.
+  std::string trouble() const;
   const std::string& shader_error() const { return shader_error_; }
   std::vector<int> pids() const;
   std::uint64_t pictures_seen() const { return pictures_seen_; }
+  /// Renderers that failed or ended unasked so far, and the last one's reason.
+  std::size_t failures() const { return failures_; }
+  const std::string& last_failure() const { return last_failure_; }
 
  private:
   static std::size_t index(Side side) { return static_cast<std::size_t>(side); }
@@ -92,7 +101,7 @@ class Workspace {
   std::array<std::map<std::string, std::map<std::string, Value>>, 2> own_;
   std::map<std::string, Value> carried_;  // the former scene's parameters, until the new one's are known
   LoadedScene loaded_;
-  bool b_on_ = false, maps_ = false;
+  bool b_on_ = false, maps_ = false, counts_ = false;
 
   std::array<std::unique_ptr<RenderClient>, 2> client_;
   std::optional<int> device_;
@@ -100,8 +109,10 @@ class Workspace {
   std::array<std::uint64_t, 2> asked_{};
   std::array<std::shared_ptr<const Picture>, 2> picture_;
   std::uint64_t generation_ = 0, structure_ = 1, pictures_seen_ = 0;
-  std::string phase_, trouble_, shader_error_;
-  double phase_began_s_ = 0;
+  std::array<std::string, 2> trouble_;
+  std::string phase_, shader_error_, last_failure_;
+  std::size_t failures_ = 0;
+  double phase_began_s_ = 0, phase_share_ = -1;
 };
 
 }  // namespace pellucid::sandbox
