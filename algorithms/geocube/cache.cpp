@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raise it when what is computed or how it is written changes.
-constexpr int kVersion = 5;
+constexpr int kVersion = 6;
 constexpr const char* kWhat = "geocube";
 
 template <class T>

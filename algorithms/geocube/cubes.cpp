@@ -13,7 +13,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "algorithms/geocube/bound_search.hpp"
+#include "algorithms/geocube/cones/bound_search.hpp"
 #include "algorithms/geocube/weld.hpp"
 #include "algorithms/progress.hpp"
 #include "gl/error.hpp"
@@ -135,8 +135,14 @@ Sheet sheet_of(const std::vector<Crossing>& crossings, const CubeGrid& grid) {
 /// Works out the cones of one cube.
 class Cones {
  public:
-  Cones(const Solid& solid, const glm::dvec3& center, const CubeOptions& options, const Radial& radial)
-      : solid_(solid), center_(center), options_(options), radial_(radial), grid_(options.resolution) {
+  Cones(const Solid& solid, const glm::dvec3& center, const CubeOptions& options, const Radial& radial,
+        const SheetTree& directions)
+      : solid_(solid),
+        center_(center),
+        options_(options),
+        radial_(radial),
+        directions_(directions),
+        grid_(options.resolution) {
     for (const auto& layer : radial.layers)
       outer_.emplace_back(grid_, sheet_of(layer.outer, grid_));
     for (std::size_t k = 1; k < radial.layers.size(); ++k)
@@ -231,8 +237,8 @@ class Cones {
   double cone_b(const Crossing& crossing, const glm::dvec3& v, const SheetTree& tree, std::size_t& hint) const {
     const ConeB cone{v, crossing.normal, crossing.distance * glm::dot(v, crossing.normal),
                      0.5 * options_.epsilon * solid_.diagonal()};
-    if (options_.cone_b == ConeBase::enclosing) return cone_b_enclosing(cone, tree.sheet(), grid_);
-    return cone_b_inscribed(cone, tree, hint);
+    if (options_.cone_b == ConeBase::enclosing) return cone_b_enclosing(cone, tree.sheet, grid_);
+    return cone_b_inscribed(cone, tree, directions_, hint);
   }
 
   double radius_c(const Crossing& crossing, const glm::dvec3& v, std::uint32_t& hint) const {
@@ -246,6 +252,7 @@ class Cones {
   glm::dvec3 center_;
   const CubeOptions& options_;
   const Radial& radial_;
+  const SheetTree& directions_;
   CubeGrid grid_;
   std::vector<SheetTree> outer_, inner_;  // by layer; by layer but the first
   std::vector<const SheetTree*> all_, nearest_only_;
@@ -286,13 +293,14 @@ CubeSet build_cubes(const Solid& solid, std::span<const glm::dvec3> centers, con
   result.options = options;
   result.diagonal = solid.diagonal();
   const CubeGrid grid(options.resolution);
+  const SheetTree directions(grid, unit_sphere(grid));
   for (const glm::dvec3& center : centers) {
     Cube cube;
     cube.center = center;
     if (options.use_d) cube.sphere = static_cast<float>(solid.tree().nearest(center).distance);
     const Radial radial = trace_all(solid, center, grid, options.layers);
     cube.dropped_share = static_cast<double>(radial.dropped) / static_cast<double>(grid.texels());
-    Cones(solid, center, options, radial)
+    Cones(solid, center, options, radial, directions)
         .fill(cube, fmt::format("cones of cube {} of {}", result.cubes.size() + 1, centers.size()));
     result.cubes.push_back(std::move(cube));
   }

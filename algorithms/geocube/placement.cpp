@@ -21,6 +21,8 @@ using Flags = std::vector<char>;  // by triangle
 // A triangle's area counts less the more aslant a centre sees it, since there the cube's texels lie far apart.
 // It decides between centres that see the same.
 constexpr double kAslant = 0.02;
+// A centre beside a wall spends most of its texels on it. It decides likewise, within this distance [diagonals].
+constexpr double kBeside = 0.02, kClear = 0.02;
 
 class Chooser {
  public:
@@ -135,6 +137,8 @@ class Chooser {
           const double aslant = alone ? kAslant * (1 - glm::dot(from, solid_.facet_normal(t))) : 0;
           gains[i] += solid_.area(t) * (1 - aslant);
         }
+        const double clear = solid_.tree().nearest(places[i]).distance / (kClear * solid_.diagonal());
+        gains[i] *= 1 - kBeside * std::max(0.0, 1 - clear);
       }
     });
     return gains;

@@ -51,6 +51,18 @@ std::string where_open(const Welded& surface, const Topology& found) {
                      place(middle));
 }
 
+void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction, double begin) {
+  ray.org_x = static_cast<float>(origin.x);
+  ray.org_y = static_cast<float>(origin.y);
+  ray.org_z = static_cast<float>(origin.z);
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tnear = static_cast<float>(begin);
+  ray.tfar = std::numeric_limits<float>::infinity();
+  ray.mask = ~0U;
+}
+
 }  // namespace
 
 void Solid::Release::operator()(RTCDeviceTy* device) const {
@@ -159,15 +171,7 @@ glm::dvec3 Solid::shading_normal(std::uint32_t triangle, const glm::dvec3& weigh
 
 std::optional<SurfaceHit> Solid::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double begin) const {
   RTCRayHit query{};
-  query.ray.org_x = static_cast<float>(origin.x);
-  query.ray.org_y = static_cast<float>(origin.y);
-  query.ray.org_z = static_cast<float>(origin.z);
-  query.ray.dir_x = static_cast<float>(direction.x);
-  query.ray.dir_y = static_cast<float>(direction.y);
-  query.ray.dir_z = static_cast<float>(direction.z);
-  query.ray.tnear = static_cast<float>(begin);
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0U;
+  set_ray(query.ray, origin, direction, begin);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
   rtcIntersect1(rays_.get(), &query);
@@ -215,9 +219,29 @@ bool Solid::sees(const glm::dvec3& inside, std::uint32_t triangle) const {
   const glm::dvec3 way = centroid(triangle) - inside;
   const double distance = glm::length(way);
   if (distance <= 0) return true;
-  if (glm::dot(way, facet_normal(triangle)) <= 0) return false;
-  const auto hit = first_hit(inside, way / distance);
-  return hit && (hit->triangle == triangle || hit->distance >= distance * (1 - 1e-5));
+  const double facing = glm::dot(way, facet_normal(triangle)) / distance;
+  if (facing <= 0) return false;
+  constexpr double kNear = 1e-5;  // before the centroid, as a share of the way
+  // In single precision a ray meets the triangle itself that much too early where it grazes it.
+  if (facing < 0.02) {
+    const auto hit = first_hit(inside, way / distance);
+    return hit && (hit->triangle == triangle || hit->distance >= distance * (1 - kNear));
+  }
+  return !blocked(inside, way, 1 - kNear);
+}
+
+bool Solid::blocked(const glm::dvec3& from, const glm::dvec3& way, double share) const {
+  RTCRay ray{};
+  set_ray(ray, from, way, 0);
+  ray.tfar = static_cast<float>(share);
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(rays_.get(), &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(rays_.get(), &context, &ray);
+#endif
+  return ray.tfar < 0;
 }
 
 }  // namespace pellucid::geocube

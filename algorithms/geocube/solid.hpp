@@ -9,7 +9,7 @@
 
 #include <glm/glm.hpp>
 
-#include "algorithms/geocube/triangle_tree.hpp"
+#include "algorithms/geocube/cones/triangle_tree.hpp"
 #include "algorithms/scene/scene.hpp"
 
 struct RTCDeviceTy;
@@ -69,6 +69,8 @@ class Solid {
     void operator()(RTCSceneTy* scene) const;
   };
   void build_rays();
+  /// True if the surface is met before this share of the way.
+  bool blocked(const glm::dvec3& from, const glm::dvec3& way, double share) const;
 
   std::string name_;
   TriangleTree tree_;

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/geocube/bound_search.hpp"
+#include "algorithms/geocube/cones/triangle_distance.hpp"
 #include "algorithms/geocube/cubes.hpp"
 #include "tests/algorithms/geocube/geocube_solids.hpp"
 
@@ -94,7 +94,9 @@ TEST(GeocubeCones, EveryCellOfTheTreeMayBeLeftOutUnseen) {  // the full comparis
         if (std::abs(glm::dot(w, normal)) > half_width * (1 + 1e-5)) b = std::max(b, glm::dot(grid.direction(k), v));
       }
       const double eta_sine = 1 / options.ior;
-      for (std::uint32_t t = 0; t < solid.triangle_count(); ++t) {
+      // The tree of triangles has a test of its own to the last bit (geocube_bound_search.cpp); here some texels do.
+      const bool all_triangles = i % 35 == 0;
+      for (std::uint32_t t = 0; all_triangles && t < solid.triangle_count(); ++t) {
         if (t == hit->triangle) continue;
         c = std::min(c, distance_in_cone({shape.center + s, -normal, std::sqrt(1 - eta_sine * eta_sine), eta_sine},
                                          solid.tree().corners(t)));
@@ -102,9 +104,9 @@ TEST(GeocubeCones, EveryCellOfTheTreeMayBeLeftOutUnseen) {  // the full comparis
       EXPECT_GE(widened(layer.bounds[i].y), a - 2e-4) << shape.name << ' ' << i;
       EXPECT_LE(widened(layer.bounds[i].y), a_or_base + 2e-4) << shape.name << ' ' << i;
       EXPECT_NEAR(widened(layer.bounds[i].z), std::max(b, 0.0), 1e-5) << shape.name << ' ' << i;
-      EXPECT_LE(widened(layer.bounds[i].w), c + 1e-6) << shape.name << ' ' << i;
-      EXPECT_GE(widened(layer.bounds[i].w), std::min(c, set.diagonal) * (1 - kConeSlack) - 1e-6)
-          << shape.name << ' ' << i;
+      if (all_triangles) {
+        EXPECT_NEAR(widened(layer.bounds[i].w), std::min(c, set.diagonal), 1e-6) << shape.name << ' ' << i;
+      }
     }
   }
 }

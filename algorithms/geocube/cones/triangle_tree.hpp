@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -9,26 +10,20 @@
 
 #include <glm/glm.hpp>
 
+#include "algorithms/geocube/cones/lanes.hpp"
+#include "algorithms/geocube/cones/triangle_distance.hpp"
+
 namespace pellucid::geocube {
 
 inline constexpr std::uint32_t kNoTriangle = ~0U;
-inline constexpr double kConeSlack = 0.03;
-
-/// A circular cone without a base: the points whose direction from `apex` is within the half-angle of `axis`.
-struct Cone {
-  glm::dvec3 apex{0.0};
-  glm::dvec3 axis{0.0, 0.0, 1.0};  ///< unit
-  double cosine = 1;               ///< of the half-angle, in [0, 1]
-  double sine = 0;
-};
 
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
   std::uint32_t triangle = kNoTriangle;
 };
 
-/// Triangles in a binary tree of boxes, for the questions that rays do not answer: what is nearest, what lies in a
-/// cone, what cuts what.
+/// Triangles in a tree of boxes, four to a node, for the questions that rays do not answer: what is nearest, what lies
+/// in a cone, what cuts what.
 class TriangleTree {
  public:
   TriangleTree() = default;
@@ -53,31 +48,26 @@ class TriangleTree {
   }
 
  private:
-  struct Node {  // half a cache line
-    glm::vec3 centre{0.0F};
-    std::uint32_t first =
-        0;                 ///< of the leaf's triangles in order_, or the right child; the left one follows its parent
-    glm::vec3 half{0.0F};  ///< the box's half edges, rounded up
-    std::uint32_t count = 0;  ///< 0: an inner node
+  /// A node's four children side by side: the triangles of each lie in a box and between two parallel planes, which a
+  /// piece of a smooth surface nearly fills.
+  struct Node {
+    FourVectorsKept centre, half;  ///< of the box; the half edges are rounded up
+    FourVectorsKept normal;        ///< unit, of the planes
+    FourKept offset, thickness;    ///< the planes lie at offset ± thickness from the box's centre
+    std::array<std::uint32_t, 4> child{kNoTriangle, kNoTriangle, kNoTriangle, kNoTriangle};  ///< kTriangle: a triangle
   };
-  void build(std::uint32_t begin, std::uint32_t end, const std::vector<glm::dvec3>& centroids);
+  static constexpr std::uint32_t kTriangle = 1U << 31U;
+
+  std::uint32_t build(std::span<std::uint32_t> order, const std::vector<glm::dvec3>& centroids);
+  void enclose(Node&, std::size_t lane, std::span<const std::uint32_t> triangles) const;
   bool crosses(std::uint32_t a, std::uint32_t b) const;
-  template <class Meets, class Distance>
-  void nearest_first(const glm::vec3& from, double slack, Nearest& best, Meets, Distance) const;
+  template <class Bound, class Distance>
+  void nearest_first(Nearest& best, Bound, Distance) const;
 
   std::vector<glm::dvec3> positions_;
   std::vector<glm::uvec3> triangles_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
-  double spread_ = 0;  ///< the largest coordinate
+  std::vector<Node> nodes_;  // the root first
+  double spread_ = 0;        // the largest coordinate
 };
-
-/// Distance from the origin to the nearest point of a triangle.
-double distance_to_triangle(const std::array<glm::dvec3, 3>& corners);
-
-/// Distance from the cone's apex to the nearest point of the triangle in the cone; infinite when there is none, and
-/// perhaps when it is not below `below`.
-double distance_in_cone(const Cone&, const std::array<glm::dvec3, 3>& corners,
-                        double below = std::numeric_limits<double>::infinity());
 
 }  // namespace pellucid::geocube
