@@ -78,10 +78,11 @@ void main() {
   exit_normal = vec4(first.normal, float(first.cube));
 #else
   vec3 shown = vec3(0.0);
+  float most = 1.0;  // share of the light that is still on its way, in the channel with the largest
 #ifdef SCATTERING
   vec3 depth = vec3(0.0), returned = vec3(0.0);  // optical thickness so far, and what of the light it has sent back
 #endif
-  for (int k = 0; here && k <= reflections && h != vec3(0.0) && (k == 0 || max(weight.x, max(weight.y, weight.z)) > cut); ++k) {
+  for (int k = 0; here && k <= reflections && h != vec3(0.0) && (k == 0 || most > cut); ++k) {
     Exit found = trace_inside(p, n, h, cube, start);
 #ifdef SCATTERING
     depth += extinction * (found.path * object_scale);
@@ -107,6 +108,12 @@ void main() {
     if (kept < 1.0) color += (1.0 - kept) * weight * light(refract(h, -n, ior));
 #endif
     weight *= kept;
+#ifdef SCATTERING
+    vec3 on_the_way = weight * transmitted_share;
+#else
+    vec3 on_the_way = weight;
+#endif
+    most = max(on_the_way.x, max(on_the_way.y, on_the_way.z));
     h = reflect(h, n);
     p = found.point;
     cube = found.cube;
