@@ -1,6 +1,7 @@
 #include "plots/figures/figure_reader.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -15,6 +16,8 @@
 
 namespace pellucid::plots {
 namespace {
+
+constexpr std::size_t kMostSlabs = 8;  // as many as there are colours
 
 std::vector<std::string> words(TableReader& reader, std::string_view key, Need need = Need::optional) {
   std::vector<std::string> found;
@@ -167,6 +170,23 @@ void read_map(TableReader& reader, const sweeps::Paper& paper, PlaneMap& map) {
     map.marks.push_back(read_mark(mark, paper, map.marks));
 }
 
+// slab = { depths = [1, 2], anisotropy = 0.8, albedo = 1, show = "transmission", polar = false }
+void read_slabs(TableReader reader, SlabChart& chart) {
+  const toml::array* depths = reader.node("depths", Need::required)->as_array();
+  if (depths == nullptr || depths->empty() || depths->size() > kMostSlabs)
+    reader.fail("depths", fmt::format("a list of one to {} optical thicknesses", kMostSlabs));
+  for (const toml::node& depth : *depths) {
+    const double value = depth.value<double>().value_or(-1);
+    if (!(value >= 0 && value <= 1e4)) reader.fail("depths", "an optical thickness is a number from 0 to 10000");
+    chart.depths.push_back(value);
+  }
+  reader.number("anisotropy", chart.medium.anisotropy, {-0.98, 0.98}, Need::required);
+  reader.number("albedo", chart.medium.albedo, {0, 1});
+  chart.show = static_cast<SlabChart::Show>(reader.choice("show", {"transmission", "reflection"}, 0));
+  reader.boolean("polar", chart.polar);
+  reader.finish();
+}
+
 }  // namespace
 
 Figure read_figure(const sweeps::PaperEntry& entry) {
@@ -180,6 +200,13 @@ Figure read_figure(const sweeps::PaperEntry& entry) {
   reader.text("title", figure.title, Need::required);
   figure.doc = figure.title;
   reader.text("doc", figure.doc);
+  if (auto slabs = reader.table("slab")) {
+    SlabChart& chart = figure.drawing.emplace<SlabChart>();
+    chart.title = figure.title;
+    read_slabs(*slabs, chart);
+    reader.finish();
+    return figure;
+  }
   if (entry.paper->sweeps.size() == 1) figure.sweep = entry.paper->sweeps.front().name;
   reader.text("sweep", figure.sweep, figure.sweep.empty() ? Need::required : Need::optional);
   const auto known = std::any_of(entry.paper->sweeps.begin(), entry.paper->sweeps.end(),
@@ -191,13 +218,15 @@ Figure read_figure(const sweeps::PaperEntry& entry) {
     read_chart(reader, *entry.paper, figure.drawing.emplace<RowChart>());
     std::get<RowChart>(figure.drawing).colours = entry.paper->colours;
   }
-  std::visit(
-      [&](auto& drawing) {
-        drawing.title = figure.title;
-        drawing.needs = fields(reader, "needs", *entry.paper);
-        drawing.where = read_where(reader);
-      },
-      figure.drawing);
+  const auto read_rows = [&](auto& drawing) {
+    drawing.title = figure.title;
+    drawing.needs = fields(reader, "needs", *entry.paper);
+    drawing.where = read_where(reader);
+  };
+  if (auto* map = std::get_if<PlaneMap>(&figure.drawing))
+    read_rows(*map);
+  else
+    read_rows(std::get<RowChart>(figure.drawing));
   reader.finish();
   return figure;
 }

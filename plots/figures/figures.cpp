@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "gl/error.hpp"
 #include "plots/charts/style.hpp"
 #include "plots/figures/figure_reader.hpp"
 #include "sweeps/store/csv.hpp"
@@ -83,19 +84,25 @@ Figure find_figure(std::string_view name) {
 }
 
 Drawn draw_figure(const Figure& figure, const std::vector<json>& rows, std::span<const Where> where) {
+  if (const auto* slabs = std::get_if<SlabChart>(&figure.drawing)) {
+    if (!where.empty())
+      throw InputError(fmt::format("figure '{}' is worked out: it has no rows to choose", figure.name));
+    const Chart chart = chart_of_slabs(*slabs);
+    return {to_svg(chart), data_of(chart)};
+  }
   const Fields fields(figure.paper.get());
-  return std::visit(
-      [&](auto drawing) {
-        std::vector<Where> conditions;
-        const bool chosen = std::any_of(where.begin(), where.end(), [](const Where& w) { return w.field == "sweep"; });
-        const sweeps::SweepRows own = sweeps::rows_of_sweep(rows, figure.sweep);
-        if (!chosen && !own.rows.empty()) conditions.push_back({"sweep", {own.sweep}});
-        conditions.insert(conditions.end(), drawing.where.begin(), drawing.where.end());
-        conditions.insert(conditions.end(), where.begin(), where.end());
-        drawing.where = std::move(conditions);
-        return draw(drawing, rows, fields);
-      },
-      figure.drawing);
+  const auto chosen_rows = [&](auto drawing) {
+    std::vector<Where> conditions;
+    const bool chosen = std::any_of(where.begin(), where.end(), [](const Where& w) { return w.field == "sweep"; });
+    const sweeps::SweepRows own = sweeps::rows_of_sweep(rows, figure.sweep);
+    if (!chosen && !own.rows.empty()) conditions.push_back({"sweep", {own.sweep}});
+    conditions.insert(conditions.end(), drawing.where.begin(), drawing.where.end());
+    conditions.insert(conditions.end(), where.begin(), where.end());
+    drawing.where = std::move(conditions);
+    return draw(drawing, rows, fields);
+  };
+  if (const auto* map = std::get_if<PlaneMap>(&figure.drawing)) return chosen_rows(*map);
+  return chosen_rows(std::get<RowChart>(figure.drawing));
 }
 
 Drawn draw_chart(const RowChart& wanted, const std::vector<json>& rows) {

@@ -12,6 +12,7 @@
 #include "plots/figures/plane_map.hpp"
 #include "plots/figures/row_chart.hpp"
 #include "plots/figures/rows.hpp"
+#include "plots/figures/slab_chart.hpp"
 #include "sweeps/papers/paper.hpp"
 
 /// The figures of papers: [[figures]] of a paper's file (sweeps/README.md), drawn from rows of a store.
@@ -24,8 +25,8 @@ struct Figure {
   std::string full_name;  ///< "PAPER.fps"
   std::string title;      ///< printed above the chart
   std::string doc;        ///< one sentence: what is drawn
-  std::string sweep;      ///< whose rows it shows; or those of its preview, SWEEP_preview
-  std::variant<RowChart, PlaneMap> drawing;
+  std::string sweep;      ///< whose rows it shows; or those of its preview, SWEEP_preview; empty: it needs none
+  std::variant<RowChart, PlaneMap, SlabChart> drawing;
 };
 
 /// Every figure of a paper, in the order of its file. Throws InputError "file:line:column: …" for the first mistake.

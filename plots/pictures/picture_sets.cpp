@@ -130,8 +130,10 @@ void read_reference(TableReader& reader, PictureSet& set) {
   double samples = set.samples;
   reader.integer("samples", samples, {1, 65'536});
   set.samples = static_cast<int>(samples);
+  reader.integer("preview_samples", samples, {1, 65'536});
+  set.preview_samples = static_cast<int>(samples);
   reader.boolean("caustics", set.caustics);
-  for (const char* key : {"samples", "caustics"}) {
+  for (const char* key : {"samples", "preview_samples", "caustics"}) {
     if (reader.has(key) && set.surfaces != "rays") reader.fail(key, "goes with surfaces = \"rays\"");
   }
   reader.finish();

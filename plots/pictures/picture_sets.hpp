@@ -36,6 +36,7 @@ struct PictureSet {
   int width = 0, height = 0;
   std::string surfaces = "rays";  ///< of the reference: rays, raster or forward
   int samples = 1;                ///< of the reference with rays, per pixel
+  int preview_samples = 1;        ///< the same for a preview; as many as `samples` where the file names none
   bool caustics = false;          ///< of the reference with rays
   std::vector<PictureRecipe> pictures;
   std::string close_up_of;  ///< the picture whose FLIP map places the close-up; empty where `close_up` says where it is

@@ -35,7 +35,8 @@ int list_figures(bool as_json) {
     if (as_json) {
       out.push_back({{"name", figure.full_name}, {"title", figure.title}, {"doc", figure.doc}, {"spec", figure.sweep}});
     } else {
-      fmt::print("{:<33} {} (sweep {})\n", figure.full_name, figure.doc, figure.sweep);
+      const std::string rows = figure.sweep.empty() ? "worked out, without a store" : "sweep " + figure.sweep;
+      fmt::print("{:<33} {} ({})\n", figure.full_name, figure.doc, rows);
     }
   }
   if (as_json) fmt::print("{}\n", out.dump(2));
@@ -83,13 +84,15 @@ int plot(PlotArguments arguments) {
   if (arguments.store.empty() && arguments.what.ends_with(".db"))
     throw InputError(fmt::format("{}: there is no such store", arguments.what));
   const plots::Figure figure = plots::find_figure(arguments.what);
-  if (arguments.store.empty())
+  const bool worked_out = figure.sweep.empty();
+  if (arguments.store.empty() && !worked_out)
     throw InputError(fmt::format("figure '{}' needs --store S.db: where its rows are", arguments.what));
   if (!chart.x.field.empty() || !chart.y.field.empty() || !chart.series.empty() || arguments.log_x || arguments.log_y ||
       !chart.title.empty()) {
     throw InputError("--x, --y, --series, --log-x, --log-y and --title go with a store, not with a named figure");
   }
-  write(plots::draw_figure(figure, sweeps::read_rows(arguments.store), where), arguments);
+  const auto rows = worked_out ? std::vector<nlohmann::json>() : sweeps::read_rows(arguments.store);
+  write(plots::draw_figure(figure, rows, where), arguments);
   return kDone;
 }
 

@@ -152,13 +152,15 @@ void write_figures(const std::filesystem::path& folder, PaperOutcome& outcome) {
   for (const plots::Figure& drawn : plots::read_figures(outcome.paper)) {
     FigureOutcome figure{
         .name = drawn.full_name, .title = drawn.title, .doc = drawn.doc, .path = {}, .missing = {}, .repeat = {}};
-    const SweepOutcome* sweep = sweep_of(outcome, drawn.sweep);
-    if (sweep == nullptr) {
+    const bool worked_out = drawn.sweep.empty();
+    const SweepOutcome* sweep = worked_out ? nullptr : sweep_of(outcome, drawn.sweep);
+    if (sweep == nullptr && !worked_out) {
       figure.missing = fmt::format("the paper's sweeps have no {}", drawn.sweep);
     } else {
       const std::filesystem::path base = folder / "figures" / drawn.name;
       try {
-        const plots::Drawn drawing = plots::draw_figure(drawn, sweep->rows);
+        const plots::Drawn drawing =
+            plots::draw_figure(drawn, worked_out ? std::vector<nlohmann::json>() : sweep->rows);
         for (const char* extension : {".svg", ".png", ".pdf"})
           plots::write_svg_as(drawing.svg, base.string() + extension);
         write_text_file(base.string() + ".csv", drawing.csv);
@@ -166,9 +168,9 @@ void write_figures(const std::filesystem::path& folder, PaperOutcome& outcome) {
       } catch (const InputError& e) {
         figure.missing = e.what();  // nothing left to draw when its points failed: the report says so
       }
-      figure.repeat =
-          fmt::format("pellucid plot {} --store {} -o {}", sweeps::shell_word(outcome.paper->address(drawn.name)),
-                      sweeps::shell_word(sweep->store), sweeps::shell_word(base.string() + ".svg"));
+      figure.repeat = fmt::format("pellucid plot {}{} -o {}", sweeps::shell_word(outcome.paper->address(drawn.name)),
+                                  worked_out ? "" : " --store " + sweeps::shell_word(sweep->store),
+                                  sweeps::shell_word(base.string() + ".svg"));
     }
     outcome.figures.push_back(std::move(figure));
   }

@@ -240,14 +240,15 @@ class Drawing {
     reference.name = "reference";
     reference.exr = "reference.exr";
     std::vector<std::string> command{"reference", out_.scene, "--surfaces", set_.surfaces};
-    if (set_.samples > 1) command.insert(command.end(), {"--samples", std::to_string(set_.samples)});
+    const int samples = options_.preview ? set_.preview_samples : set_.samples;
+    if (samples > 1) command.insert(command.end(), {"--samples", std::to_string(samples)});
     if (set_.caustics) command.emplace_back("--caustics");
     add_place(command, reference.exr);
     reference.repeat = shown(command);
     Wanted wanted{.command = "reference", .recipe = place(), .scene_hash = scene_hash_, .device = options_.made_on};
     wanted.recipe["surfaces"] = set_.surfaces;
     if (set_.surfaces == "rays") {
-      wanted.recipe["samples"] = set_.samples;
+      wanted.recipe["samples"] = samples;
       wanted.recipe["caustics"] = set_.caustics;
     }
     std::vector<Product> products{{.path = path(reference.exr), .wanted = std::move(wanted), .file = {}, .why = {}}};

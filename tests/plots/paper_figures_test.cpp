@@ -1,7 +1,9 @@
 // Figures that are data: what each shows of stored rows, and what their files must say.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -9,9 +11,11 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scattering/slab.hpp"
 #include "gl/error.hpp"
 #include "plots/figures/figures.hpp"
 #include "sweeps/spec/spec.hpp"
@@ -186,6 +190,36 @@ TEST(PaperFigures, MistakesAreToldWithTheirPlace) {
                      "no_worse_in = 'flip_mean'\nthan = 'b'\n")
                 .substr(0, 13),
             "my.toml:19:8:");
+}
+
+/// A file of one figure that needs no sweep.
+sweeps::PaperPointer slab_paper(const std::string& slab) {
+  return sweeps::parse_paper("title = 'Mine'\n[[figures]]\nname = 'f'\ntitle = 'A figure'\nslab = " + slab + "\n",
+                             "my.toml");
+}
+
+TEST(PaperFigures, SlabsAreWorkedOutWithoutRows) {
+  const scattering::SlabLight light = scattering::Slab({0.8, 0.9}, kSlabOrdinates).light(2);
+  for (const bool polar : {false, true}) {
+    const Figure figure = read_figures(slab_paper(fmt::format(
+        "{{ depths = [1, 2], anisotropy = 0.8, albedo = 0.9, show = 'reflection', polar = {} }}", polar)))[0];
+    const Chart chart = chart_of_slabs(std::get<SlabChart>(figure.drawing));
+    ASSERT_EQ(chart.series.size(), 2U);
+    // Radiances are those of the slab, whatever the coordinates: their sum over the ordinates, on both sides if polar.
+    double sum = 0, expected = 0;
+    for (const Point& point : chart.series[1].points)
+      sum += polar ? std::hypot(point.x, point.y) : point.y;
+    for (const double radiance : light.reflection)
+      expected += polar ? 2 * radiance : radiance;
+    EXPECT_NEAR(sum, expected, 1e-12);
+    EXPECT_NE(draw_figure(figure, {}).csv.find("τ = 2"), std::string::npos);
+    const Where where{"technique", {"geocube"}};
+    EXPECT_THROW(draw_figure(figure, {}, std::span(&where, 1)), InputError);
+  }
+  for (const char* bad :
+       {"{ anisotropy = 0.8 }", "{ depths = [], anisotropy = 0.8 }", "{ depths = [-1], anisotropy = 0.8 }",
+        "{ depths = [1], anisotropy = 1 }", "{ depths = [1], anisotropy = 0, albedo = 2 }"})
+    EXPECT_THROW(read_figures(slab_paper(bad)), InputError) << bad;
 }
 
 const std::filesystem::path kStored = std::filesystem::path(PELLUCID_SOURCE_DIR) / "tests/plots";
