@@ -342,7 +342,7 @@ bool App::draw_or_give_up() {
   try {
     draw();
     if (gl::Window::context_lost()) throw RuntimeError("the device was reset");
-    if (options_.lose_context_at > 0 && options_.lose_context_at == workspace_.pictures_seen() && kept_.windows == 1)
+    if (options_.lose_context_at > 0 && options_.lose_context_at <= workspace_.pictures_seen() && kept_.windows == 1)
       throw RuntimeError("as --lose-context-at asks for");
     ++drawings_;
     return true;

@@ -114,6 +114,11 @@ ParameterRow::ParameterRow(nanogui::Widget* parent, std::string name, const Para
   refresh();
 }
 
+// In a narrow window the label gives way, so that the slider and its field stay apart.
+int ParameterRow::label_width() const {
+  return std::min(kLabel, mSize.x() * 2 / 5);
+}
+
 bool ParameterRow::matches(const std::string& search) const {
   return name_.find(search) != std::string::npos || info_.symbol.find(search) != std::string::npos ||
          info_.doc.find(search) != std::string::npos;
@@ -190,7 +195,7 @@ Vector2i ParameterRow::preferredSize(NVGcontext* ctx) const {
 }
 
 void ParameterRow::performLayout(NVGcontext*) {
-  const int from = kDot + kLabel, rest = mSize.x() - from;
+  const int from = kDot + label_width(), rest = mSize.x() - from;
   if (check_ != nullptr) {
     check_->setPosition({from + 2, 0});
     check_->setSize({16, paint::kLine});
@@ -209,7 +214,7 @@ void ParameterRow::performLayout(NVGcontext*) {
 
 bool ParameterRow::mouseButtonEvent(const Vector2i& p, int button, bool down, int modifiers) {
   if (nanogui::Widget::mouseButtonEvent(p, button, down, modifiers)) return true;
-  if (button == GLFW_MOUSE_BUTTON_1 && down && p.x() - mPos.x() < kDot + kLabel) {
+  if (button == GLFW_MOUSE_BUTTON_1 && down && p.x() - mPos.x() < kDot + label_width()) {
     reset();
     return true;
   }
@@ -223,10 +228,11 @@ void ParameterRow::draw(NVGcontext* ctx) {
   nvgFill(ctx);
   const std::string label = info_.symbol.empty() ? info_.name : fmt::format("{}  {}", info_.name, info_.symbol);
   const bool changed = differs();
-  paint::line(ctx, x() + kDot, y(), kLabel - 14, paint::kLine, label, changed ? paint::accent() : paint::text(),
+  const auto width = static_cast<float>(label_width());
+  paint::line(ctx, x() + kDot, y(), width - 14, paint::kLine, label, changed ? paint::accent() : paint::text(),
               paint::kText, paint::Align::left, changed);
   // The arrow that goes back.
-  if (changed) paint::line(ctx, x() + kDot + kLabel - 15, y(), 14, paint::kLine, "×", paint::dim_text());
+  if (changed) paint::line(ctx, x() + kDot + width - 15, y(), 14, paint::kLine, "×", paint::dim_text());
   if (field_ != nullptr && !field_->reason().empty()) {
     paint::paragraph(ctx, x() + kDot, y() + paint::kLine + 1, w() - kDot, field_->reason(), paint::warning(),
                      paint::kSmallText, true);

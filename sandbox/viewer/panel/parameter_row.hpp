@@ -37,6 +37,7 @@ class ParameterRow : public Control {
   Value stepped(double steps) const;
   std::string offered(const std::string& text);
   bool curved() const;
+  int label_width() const;
   std::string name_;
   ParameterInfo info_;
   const ParameterModel& model_;
