@@ -4,11 +4,11 @@
 #include <exception>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/command_line.hpp"
 #include "sandbox/commands/commands.hpp"
@@ -16,23 +16,6 @@
 using namespace pellucid;
 
 namespace {
-
-/// A name in a message may hold line ends or a terminal's control characters; an error is one line all the same.
-std::string printable(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte != 0x7F)
-      out += c;
-    else if (c == '\n')
-      out += "\\n";
-    else if (c == '\t')
-      out += "\\t";
-    else
-      out += fmt::format("\\x{:02x}", byte);
-  }
-  return out;
-}
 
 /// Output that nobody received is a failure (a full disk behind a redirection).
 void check_standard_output() {
@@ -71,12 +54,12 @@ int main(int argc, char** argv) {
       return status;
     }
   } catch (const InputError& e) {
-    fmt::print(stderr, "error: {}\n", printable(e.what()));
+    tell("error: {}", e.what());
     return sandbox::kBadInput;
   } catch (const std::exception& e) {
     // fmt says only "file" when standard output takes no more.
     const std::string words = std::ferror(stdout) != 0 ? "cannot write to standard output" : e.what();
-    fmt::print(stderr, "error: {}\n", printable(words));
+    tell("error: {}", words);
     return sandbox::kFailed;
   }
   return sandbox::kBadInput;

@@ -12,6 +12,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "algorithms/reference/photons/photons.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/context.hpp"
 
 namespace pellucid::distance_impostors {
@@ -58,7 +59,7 @@ int exit_count(SurfaceKind kind, const LookupSettings& lookup) {
 
 void Caustics::warn(std::string text) {
   if (std::find(warnings_.begin(), warnings_.end(), text) != warnings_.end()) return;
-  fmt::print(stderr, "warning: {}\n", text);
+  tell("warning: {}", text);
   warnings_.push_back(std::move(text));
 }
 

@@ -5,13 +5,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
+
 namespace pellucid::local_cube_maps {
 
 void MapFrame::prepare(const Scene& scene, const MapSettings& maps, const LookupSettings& lookup) {
   frame_.reset();
   objects_.prepare(scene, maps, lookup, technique_);
   for (const std::string& warning : objects_.warnings())
-    fmt::print(stderr, "warning: {}\n", warning);
+    tell("warning: {}", warning);
 }
 
 std::vector<std::size_t> MapFrame::draw_maps(const Scene& scene, ForwardPass& forward, gl::PassTimer& timer,

@@ -17,6 +17,7 @@
 
 #include "algorithms/scene/files/asset_path.hpp"
 #include "algorithms/scene/files/atomic_file.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
@@ -157,8 +158,8 @@ int bundle(const Arguments& arguments) {
   if (!fs::exists(made, error) || fs::file_size(made, error) == 0)
     throw RuntimeError("tar made no archive; is xz there? " + words);
   fs::copy_file(made, arguments.output, fs::copy_options::overwrite_existing);
-  fmt::print(stderr, "{}: {:.1f} MiB, {} assets\n", arguments.output.string(),
-             static_cast<double>(fs::file_size(arguments.output)) / (1 << 20), arguments.assets.size());
+  tell("{}: {:.1f} MiB, {} assets", arguments.output.string(),
+       static_cast<double>(fs::file_size(arguments.output)) / (1 << 20), arguments.assets.size());
   return kDone;
 }
 

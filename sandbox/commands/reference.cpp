@@ -17,6 +17,7 @@
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/raster/shadow_maps.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/finite.hpp"
 #include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/view_text.hpp"
@@ -168,10 +169,9 @@ class ReferenceRun {
     file_.attributes["pellucid.reference_error"] = errors_.dump();
     write_picture(options_.output, file_, options_.display);
     if (from_rays_ && exact_.surfaces.lost_weight_mean > 0) {
-      fmt::print(
-          stderr,
+      tell(
           "warning: rays leave a dielectric unmet, or without having entered it ({:.2g} of the light): its mesh is "
-          "open or inside out\n",
+          "open or inside out",
           exact_.surfaces.lost_weight_mean);
     }
   }
@@ -189,24 +189,21 @@ class ReferenceRun {
 
   void print_summary() const {
     const std::string output = options_.output.string();
-    fmt::print(
-        stderr, "{}: {} of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance\n",
-        output,
-        of_slices_ ? fmt::format("{} slices in a frame of {} format", options_.slices, options_.format) : "reference",
-        options_.scene, size_.width, size_.height, exact_.step_error_max, exact_.step_error_mean,
-        100 * exact_.unconverged_share);
+    tell("{}: {} of {}, {}x{}, step error max {:.2g}, mean {:.2g}; {:.3g} % of the pixels above the tolerance", output,
+         of_slices_ ? fmt::format("{} slices in a frame of {} format", options_.slices, options_.format) : "reference",
+         options_.scene, size_.width, size_.height, exact_.step_error_max, exact_.step_error_mean,
+         100 * exact_.unconverged_share);
     if (from_rays_) {
       const SurfaceStatistics& s = exact_.surfaces;
-      fmt::print(
-          stderr,
+      tell(
           "{}: {:.3g} s for {} rays ({:.3g} a second); standard error max {:.2g}, mean {:.2g}; weight left out max "
-          "{:.2g}, mean {:.2g}\n",
+          "{:.2g}, mean {:.2g}",
           output, s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
           s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
     }
     if (of_slices_) {
-      fmt::print(stderr, "{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}\n", output,
-                 errors_.at("to_exact_flip_mean").get<double>(), errors_.at("to_exact_rmse").get<double>());
+      tell("{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}", output,
+           errors_.at("to_exact_flip_mean").get<double>(), errors_.at("to_exact_rmse").get<double>());
     }
   }
 

@@ -14,6 +14,7 @@
 #include <sys/resource.h>
 
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/finite.hpp"
 #include "algorithms/scene/images/picture_file.hpp"
 #include "algorithms/scene/loading_facts.hpp"
@@ -57,10 +58,10 @@ Drawn draw(const Options& options, RenderSession& session, const gl::Context& co
   const bool half = session.parameters().value("frame.format", "") == "half";
   const std::size_t saturated = half ? saturated_pixels(file.image) : 0;
   if (saturated > 0)
-    fmt::print(stderr,
-               "warning: {} pixels reach 65504, the most that the frame's 16-bit floats hold (frame.format=single "
-               "holds more)\n",
-               saturated);
+    tell(
+        "warning: {} pixels reach 65504, the most that the frame's 16-bit floats hold (frame.format=single "
+        "holds more)",
+        saturated);
 
   ordered_json recipe{
       {"scene", options.scene},          {"technique", options.technique},    {"view", session.camera().view.name},
@@ -145,8 +146,8 @@ int render(const Options& options) {
     if (options.json) {
       all.push_back(drawn.json);
     } else {
-      fmt::print(stderr, "{}: {} of {}, {}x{}, first frame {:.1f} ms on {}\n", output.string(), options.technique,
-                 options.scene, size.width, size.height, drawn.frame_ms, context.device().renderer);
+      tell("{}: {} of {}, {}x{}, first frame {:.1f} ms on {}", output.string(), options.technique, options.scene,
+           size.width, size.height, drawn.frame_ms, context.device().renderer);
       if (!options.maps.empty()) fmt::print(stderr, "{}", maps_text(drawn.maps));
     }
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/loading_facts.hpp"
 #include "sandbox/arguments.hpp"
 
@@ -38,7 +39,7 @@ void check_output_is_no_input(const std::filesystem::path& output, const Scene& 
 
 void print_warnings(const Scene& scene) {
   for (const std::string& warning : loading_facts(scene).warnings)
-    fmt::print(stderr, "warning: {}\n", warning);
+    tell("warning: {}", warning);
 }
 
 }  // namespace pellucid::sandbox

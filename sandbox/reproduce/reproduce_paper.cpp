@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/scene/files/atomic_file.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/chart.hpp"
 #include "plots/figures/figures.hpp"
@@ -50,7 +51,7 @@ class Part {
   void done() {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     outcome_.seconds.emplace_back(name_, seconds);
-    fmt::print(stderr, "{}: {}: {:.1f} s\n", outcome_.paper->name, name_, seconds);
+    tell("{}: {}: {:.1f} s", outcome_.paper->name, name_, seconds);
   }
 
  private:
@@ -68,7 +69,7 @@ void run_sweeps(const PaperOptions& options, const std::filesystem::path& folder
                        sweeps::shell_word(sweep.spec) + (options.preview ? " --preview" : ""));
   }
   for (const auto& [spec, words] : specs) {
-    fmt::print(stderr, "{}: sweep {}\n", outcome.paper->name, spec.name);
+    tell("{}: sweep {}", outcome.paper->name, spec.name);
     SweepOutcome sweep{.name = spec.name,
                        .title = spec.title,
                        .words = words,
@@ -105,9 +106,7 @@ void draw_all_pictures(const PaperOptions& options, const std::filesystem::path&
                            .preview = options.preview,
                            .made_on = device_of(outcome),
                            .say = {}};
-    drawing.say = [&](const std::string& what) {
-      fmt::print(stderr, "{}: {}: {}\n", outcome.paper->name, set.name, what);
-    };
+    drawing.say = [&](const std::string& what) { tell("{}: {}: {}", outcome.paper->name, set.name, what); };
     make_folder(drawing.folder);
     PicturesOutcome result{.name = set.name,
                            .title = set.title,
@@ -119,7 +118,7 @@ void draw_all_pictures(const PaperOptions& options, const std::filesystem::path&
     } catch (const std::exception& e) {
       // The sweeps before it may have taken hours: the report shows them, and why this is missing.
       result.missing = e.what();
-      fmt::print(stderr, "{}: {}: not drawn: {}\n", outcome.paper->name, set.name, e.what());
+      tell("{}: {}: not drawn: {}", outcome.paper->name, set.name, e.what());
     }
     outcome.pictures.push_back(std::move(result));
   }
@@ -278,8 +277,7 @@ int reproduce_papers(const PaperOptions& options) {
   } else {
     fmt::print("{}\n", page.string());
   }
-  if (failed > 0)
-    fmt::print(stderr, "{} points or sets of pictures failed; {} says which and why\n", failed, page.string());
+  if (failed > 0) tell("{} points or sets of pictures failed; {} says which and why", failed, page.string());
   return failed > 0 ? kFailed : kDone;
 }
 

@@ -16,6 +16,7 @@
 
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/scene/files/hash.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "sweeps/measure/reference_methods.hpp"
 #include "sweeps/spec/provenance.hpp"
@@ -118,10 +119,9 @@ std::unique_ptr<Reference> ReferenceFiles::read(const std::string& key) const {
     const bool intact = in.attributes.at("pellucid.reference_key") == key &&
                         in.attributes.at("pellucid.pixels_sha256") == pixels_hash(*reference);
     if (intact) return reference;
-    fmt::print(stderr, "warning: cached reference '{}' is damaged; tracing it again\n", file.string());
+    tell("warning: cached reference '{}' is damaged; tracing it again", file.string());
   } catch (const std::exception& e) {  // missing attributes and layers too
-    fmt::print(stderr, "warning: cached reference '{}' cannot be used ({}); tracing it again\n", file.string(),
-               e.what());
+    tell("warning: cached reference '{}' cannot be used ({}); tracing it again", file.string(), e.what());
   }
   return nullptr;
 }
@@ -153,7 +153,7 @@ Reference ReferenceCache::traced(const std::string& key, const std::function<Ref
   try {
     files.write(key, reference);
   } catch (const RuntimeError& e) {
-    fmt::print(stderr, "warning: the reference is not cached: {}\n", e.what());
+    tell("warning: the reference is not cached: {}", e.what());
   }
   return reference;
 }

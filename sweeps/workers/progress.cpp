@@ -9,6 +9,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "algorithms/scene/files/tell.hpp"
+
 namespace pellucid::sweeps {
 
 std::string duration_text(double seconds) {
@@ -71,7 +73,7 @@ void SweepProgress::draw() {
   struct winsize size {};
   const std::size_t columns = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80U;
   if (line.size() >= columns) line.resize(columns - 1);
-  fmt::print(stderr, "\r\x1b[K{}", line);
+  fmt::print(stderr, "\r\x1b[K{}", printable(line));
   std::fflush(stderr);
   drawn_ = true;
 }
@@ -89,14 +91,14 @@ void SweepProgress::finish(std::string_view what, std::string_view outcome, doub
   measured_s_ += wall_s;
   if (quiet_ || terminal_) return;
   const double left = each_s() * static_cast<double>(total_ - done_);
-  fmt::print(stderr, "{}/{} {}: {} ({} left)\n", done_, total_, what, outcome, duration_text(left));
+  tell("{}/{} {}: {} ({} left)", done_, total_, what, outcome, duration_text(left));
   std::fflush(stderr);
 }
 
 void SweepProgress::note(std::string_view line) {
   if (quiet_) return;
   clear();
-  fmt::print(stderr, "{}\n", line);
+  tell_line(line);
   std::fflush(stderr);
 }
 

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "sweeps/measure/quiet_lock.hpp"
 #include "sweeps/quantities/quantities.hpp"
@@ -151,8 +152,8 @@ class Runner {
     }
     if (summary_.reused > 0) expected_s_ = known_s / static_cast<double>(summary_.reused);
     if (!other_commits.empty() && !options_.quiet) {
-      fmt::print(stderr, "warning: {} of the rows in '{}' were measured by another commit ({}); this is {}\n",
-                 other_rows, path_.string(), fmt::join(other_commits, ", "), std::string(kCommit).substr(0, 12));
+      tell("warning: {} of the rows in '{}' were measured by another commit ({}); this is {}", other_rows,
+           path_.string(), fmt::join(other_commits, ", "), std::string(kCommit).substr(0, 12));
     }
     if (options_.limit > 0 && pending_.size() > options_.limit) pending_.resize(options_.limit);
   }
@@ -172,8 +173,8 @@ class Runner {
     }
     const WorkerClient::Hello hello = first.client.hello();
     if (!devices_.empty() && !devices_.contains({hello.device, hello.driver}) && !options_.quiet) {
-      fmt::print(stderr, "note: '{}' holds rows of {} ({}) too; those of {} ({}) are kept apart\n", path_.string(),
-                 devices_.begin()->first, devices_.begin()->second, hello.device, hello.driver);
+      tell("note: '{}' holds rows of {} ({}) too; those of {} ({}) are kept apart", path_.string(),
+           devices_.begin()->first, devices_.begin()->second, hello.device, hello.driver);
     }
     choose({hello.device, hello.driver});
     record_.sweep = spec_.name;

@@ -9,6 +9,7 @@
 
 #include "algorithms/scene/files/atomic_file.hpp"
 #include "algorithms/scene/files/hash.hpp"
+#include "algorithms/scene/files/tell.hpp"
 
 namespace pellucid {
 
@@ -59,7 +60,7 @@ bool CacheFile::read(const std::function<void(std::span<const std::byte>)>& unpa
     unpack(body);
     return true;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "warning: cached {} '{}' cannot be used ({}); making it again\n", what, path.string(), e.what());
+    tell("warning: cached {} '{}' cannot be used ({}); making it again", what, path.string(), e.what());
     return false;
   }
 }
@@ -80,7 +81,7 @@ void CacheFile::keep(std::span<const std::byte> body) const {
   try {
     write(body);
   } catch (const RuntimeError& e) {
-    fmt::print(stderr, "warning: the {} is not cached: {}\n", what, e.what());
+    tell("warning: the {} is not cached: {}", what, e.what());
   }
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/technique.hpp"
 #include "algorithms/technique_code.hpp"
 #include "gl/error.hpp"
@@ -70,8 +71,8 @@ void print_other_code(const std::string& store) {
   const std::vector<StoredPoint> points = Store(store, Access::read).points();
   const std::size_t other = count_of_other_code(points);
   if (other == 0) return;
-  fmt::print(stderr, "{} of the store's {} rows {} made by other code; `sweep run` measures their points anew\n", other,
-             points.size(), other == 1 ? "was" : "were");
+  tell("{} of the store's {} rows {} made by other code; `sweep run` measures their points anew", other, points.size(),
+       other == 1 ? "was" : "were");
 }
 
 /// Where the wall time of a store's runs went, a line for each sweep and device.
@@ -129,13 +130,13 @@ int print_summary(const Spec& spec, const SweepSummary& summary, const SweepArgu
   if (summary.baseline_drift) add(fmt::format("baseline drift at most {:.1f} %", 100 * *summary.baseline_drift));
   const bool worked = summary.measured + summary.failed > 0;
   const std::string part = arguments.shard.empty() ? "" : fmt::format(" (shard {})", arguments.shard);
-  fmt::print(stderr, "{}{}{}: {} points: {}{} in {}\n",
-             summary.interrupted ? "interrupted: "
-             : summary.gave_up   ? "gave up: "
-                                 : "",
-             spec.name, part, summary.planned, line, worked ? fmt::format("; {}", duration_text(summary.wall_s)) : "",
-             arguments.store);
-  if (summary.left > 0) fmt::print(stderr, "the same command goes on where this one stopped\n");
+  tell("{}{}{}: {} points: {}{} in {}",
+       summary.interrupted ? "interrupted: "
+       : summary.gave_up   ? "gave up: "
+                           : "",
+       spec.name, part, summary.planned, line, worked ? fmt::format("; {}", duration_text(summary.wall_s)) : "",
+       arguments.store);
+  if (summary.left > 0) tell("the same command goes on where this one stopped");
   return summary.interrupted || summary.failed > 0 ? kFailed : kDone;
 }
 
@@ -175,8 +176,8 @@ int references(const SweepArguments& arguments) {
   options.devices = arguments.devices;
   options.quiet = arguments.quiet;
   const ReferencesSummary summary = trace_references(spec, make_plan(spec), arguments.references, options);
-  fmt::print(stderr, "{}{}: {} references: {} in {}, {} failed\n", summary.interrupted ? "interrupted: " : "",
-             spec.name, summary.planned, summary.done, arguments.references, summary.failures.size());
+  tell("{}{}: {} references: {} in {}, {} failed", summary.interrupted ? "interrupted: " : "", spec.name,
+       summary.planned, summary.done, arguments.references, summary.failures.size());
   return summary.interrupted || !summary.failures.empty() ? kFailed : kDone;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/store/merge.hpp"
 
@@ -28,7 +29,7 @@ int merge(const Arguments& arguments) {
   const MergeSummary summary =
       merge_stores(arguments.output, {arguments.inputs.begin(), arguments.inputs.end()}, prefer);
   for (const std::string& conflict : summary.conflicts)
-    fmt::print(stderr, "settled: {}\n", conflict);
+    tell("settled: {}", conflict);
   if (arguments.as_json) {
     fmt::print("{}\n", nlohmann::json{{"store", arguments.output},
                                       {"stores", summary.stores},
@@ -39,9 +40,8 @@ int merge(const Arguments& arguments) {
                                       {"conflicts", summary.conflicts}}
                            .dump(2));
   }
-  fmt::print(stderr, "{}: {} rows; of {} stores {} rows added, {} there already, {} measured twice, {} conflicts\n",
-             arguments.output, summary.rows, summary.stores, summary.added, summary.duplicates, summary.repeats,
-             summary.conflicts.size());
+  tell("{}: {} rows; of {} stores {} rows added, {} there already, {} measured twice, {} conflicts", arguments.output,
+       summary.rows, summary.stores, summary.added, summary.duplicates, summary.repeats, summary.conflicts.size());
   return kDone;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/cluster/slurm.hpp"
@@ -45,13 +46,13 @@ int slurm(Arguments arguments) {
   if (arguments.dry_run) {
     for (const auto& [name, text] : slurm_scripts(options))
       fmt::print("{}\n", (options.folder / name).string());
-    fmt::print(stderr, "to submit them: sh {}\n", shell_word(submit));
+    tell("to submit them: sh {}", shell_word(submit));
     return kDone;
   }
   const int status = std::system(shell_line({"sh", submit}).c_str());  // NOLINT: our own script, in the foreground
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw RuntimeError(fmt::format("{} did not submit everything; its words are above", submit));
-  fmt::print(stderr, "submitted; to follow: pellucid sweep status {}\n", shell_word(options.folder.string()));
+  tell("submitted; to follow: pellucid sweep status {}", shell_word(options.folder.string()));
   return kDone;
 }
 

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/spec/plan.hpp"
@@ -171,8 +172,8 @@ int compare(CompareArguments arguments) {
       fmt::print("{} points are in the first alone, {} in the second\n", result.only_in_a, result.only_in_b);
   }
   if (result.regressions() == 0) return kDone;
-  fmt::print(stderr, "{} of {} points are worse by more than {:g} %\n", result.regressions(), result.points.size(),
-             100 * arguments.options.tolerance);
+  tell("{} of {} points are worse by more than {:g} %", result.regressions(), result.points.size(),
+       100 * arguments.options.tolerance);
   return kRegression;
 }
 

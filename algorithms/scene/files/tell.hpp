@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace pellucid {
+
+/// The text as one line of UTF-8 without control characters: a name may hold line ends, what a terminal obeys, or bytes
+/// of another encoding. They become \n, \t and \x1b.
+std::string printable(std::string_view text);
+
+/// Prints one printable line to standard error.
+void tell_line(std::string_view line);
+template <class... T>
+void tell(fmt::format_string<T...> format, T&&... arguments) {
+  tell_line(fmt::format(format, std::forward<T>(arguments)...));
+}
+
+}  // namespace pellucid
