@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -91,7 +92,7 @@ std::string read_behind(const fs::path& path, const fs::path& shown, std::uintma
 /// Unpacks zlib's or gzip's format: for the latter RFC 1952 allows several members, one behind the other.
 class Unpacker {
  public:
-  Unpacker(const fs::path& path, std::string_view packed) : path_(path), packed_(packed) {}
+  Unpacker(const fs::path& path, std::string packed) : path_(path), packed_(std::move(packed)) {}
 
   /// Everything; throws when it is not `promised` bytes.
   std::string unpack(std::size_t promised) {
@@ -139,14 +140,14 @@ class Unpacker {
 
   /// Zeros that fill up a block may follow the last.
   bool another_member() const {
-    const std::string_view rest = packed_.substr(taken_);
+    const std::string_view rest = std::string_view(packed_).substr(taken_);
     if (rest.find_first_not_of('\0') == std::string_view::npos) return false;
     if (!rest.starts_with("\x1f\x8b")) fail_volume(path_, "something follows its packed voxels");
     return true;
   }
 
   const fs::path& path_;
-  std::string_view packed_;
+  std::string packed_;
   std::size_t taken_ = 0;
 };
 
@@ -158,20 +159,28 @@ VolumeFile read_voxels(const fs::path& path, const VolumeHeader& header, const V
   check_header(path, header, all - offset);
   const std::size_t promised = header.count() * place.type.bytes;
   auto raw = std::make_shared<std::string>();
-  if (place.packed) {
-    const std::string packed = read_behind(place.file, path, offset);
-    *raw = Unpacker(path, packed).unpack(promised);
-  } else {
-    const std::uintmax_t found = all - offset;
-    if (found < promised || (found > promised && !place.from_end && !place.may_follow))
-      fail_bytes(path, found, promised);
-    if (place.from_end) offset = all - promised;
-    *raw = read_behind(place.file, path, offset);
+  switch (const std::uintmax_t found = all - offset; place.coding) {
+    case VoxelCoding::raw:
+      if (found < promised || (found > promised && !place.from_end && !place.may_follow))
+        fail_bytes(path, found, promised);
+      if (place.from_end) offset = all - promised;
+      *raw = read_behind(place.file, path, offset);
+      break;
+    case VoxelCoding::packed:
+      *raw = Unpacker(path, read_behind(place.file, path, offset)).unpack(promised);
+      break;
+    case VoxelCoding::numbers:
+      *raw = voxels_of_numbers(path, read_behind(place.file, path, offset), header.count(), place.type);
+      break;
+    case VoxelCoding::hexadecimal:
+      *raw = bytes_of_digits(path, read_behind(place.file, path, offset), promised);
+      break;
   }
   VolumeFile volume;
   volume.size = header.size;
   volume.spacing = header.spacing;
-  volume.voxels = StoredVoxels(raw, raw->data(), header.count(), place.type, place.swapped);
+  const bool swapped = place.swapped && place.coding != VoxelCoding::numbers;
+  volume.voxels = StoredVoxels(raw, raw->data(), header.count(), place.type, swapped);
   if (place.file != path) volume.files.push_back(place.file);
   return volume;
 }

@@ -32,8 +32,24 @@ double value_from(const char* bytes, bool swapped) {
 }
 
 template <class T>
+bool store_as(double value, char* bytes) {
+  using Limits = std::numeric_limits<T>;
+  if constexpr (Limits::is_integer) {
+    // The highest number plus one is a power of two and, unlike the highest of 64 bits, exact.
+    if (!(value >= static_cast<double>(Limits::min()) && value < static_cast<double>(Limits::max()) + 1.0 &&
+          value == std::floor(value)))
+      return false;
+  } else if (std::isfinite(value) && std::abs(value) > static_cast<double>(Limits::max())) {
+    return false;
+  }
+  const T stored = static_cast<T>(value);
+  std::memcpy(bytes, &stored, sizeof stored);
+  return true;
+}
+
+template <class T>
 VoxelType voxel_of() {
-  return {sizeof(T), value_from<T>};
+  return {sizeof(T), value_from<T>, store_as<T>};
 }
 
 }  // namespace

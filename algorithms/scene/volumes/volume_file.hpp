@@ -19,6 +19,7 @@ inline constexpr std::uint64_t kMaxVoxels = std::uint64_t{1} << 30;
 struct VoxelType {
   std::size_t bytes = 0;
   double (*value)(const char* bytes, bool swapped) = nullptr;
+  bool (*store)(double value, char* bytes) = nullptr;  ///< false when the type cannot hold it
 };
 
 /// Voxels as the file stores them, x fastest. Their values are doubles: large integers and small steps on a large

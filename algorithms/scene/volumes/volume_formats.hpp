@@ -37,11 +37,18 @@ int header_size(const std::filesystem::path&, std::string_view field, std::strin
 enum class VoxelKind { floating, unsigned_integer, signed_integer };
 VoxelType voxel_type(VoxelKind, int bits);  ///< `bytes` is 0 when there is no such type
 
+enum class VoxelCoding {
+  raw,
+  packed,       ///< by zlib or gzip
+  numbers,      ///< as text
+  hexadecimal,  ///< two digits a byte
+};
+
 /// Where a header says that the voxels lie, and how they are written.
 struct VoxelBytes {
   std::filesystem::path file;
   std::uintmax_t offset = 0;
-  bool packed = false;      ///< by zlib or gzip
+  VoxelCoding coding = VoxelCoding::raw;
   bool from_end = false;    ///< they end where the file ends, and what comes before them is skipped
   bool may_follow = false;  ///< what comes behind them is left aside
   VoxelType type;
@@ -49,6 +56,11 @@ struct VoxelBytes {
 };
 /// Checks the header against the file and reads them. `path` is the header's file, for errors.
 VolumeFile read_voxels(const std::filesystem::path& path, const VolumeHeader&, const VoxelBytes&);
+
+/// Voxels of `type` in this machine's byte order, from numbers between blanks; a comma may end a number.
+std::string voxels_of_numbers(const std::filesystem::path&, std::string_view text, std::size_t count, const VoxelType&);
+/// Bytes from pairs of hexadecimal digits; blanks may stand anywhere.
+std::string bytes_of_digits(const std::filesystem::path&, std::string_view text, std::size_t promised);
 
 /// The file that a header names beside itself. Lists and numbered slices are refused; `%` may be a part of a name.
 std::filesystem::path data_file(const std::filesystem::path& path, const std::string& name);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <filesystem>
@@ -11,7 +13,8 @@
 
 #include "algorithms/scene/volumes/volume_formats.hpp"
 
-/// INRIMAGE-4: a header of 256-byte blocks of lines "KEY=value" that ends in "##}", then the voxels.
+/// INRIMAGE-4: a header of 256-byte blocks of lines "KEY=value" that ends in "##}", then the voxels. A key that is none
+/// of the format's is an error: it may be one that matters.
 namespace pellucid {
 
 namespace fs = std::filesystem;
@@ -31,6 +34,21 @@ struct InrHeader {
   }
 };
 
+/// Sizes, voxels and spacing; origin, rotation and offset, which are left aside.
+constexpr std::array<std::string_view, 20> kInrKeys = {"XDIM", "YDIM", "ZDIM", "VDIM", "TYPE", "PIXSIZE", "SCALE",
+                                                       "CPU",  "VX",   "VY",   "VZ",   "TX",   "TY",      "TZ",
+                                                       "RX",   "RY",   "RZ",   "XO",   "YO",   "ZO"};
+
+void read_inr_line(const fs::path& path, const std::string& line, InrHeader& header) {
+  const auto equals = line.find('=');
+  if (line.starts_with('#') || equals == std::string::npos) return;
+  const std::string key = line.substr(0, equals);
+  if (std::find(kInrKeys.begin(), kInrKeys.end(), key) == kInrKeys.end())
+    fail_volume(path, fmt::format("'{}' in its header is no key of INRIMAGE-4", key));
+  if (!header.values.emplace(key, line.substr(equals + 1)).second)
+    fail_volume(path, fmt::format("its header states {} twice", key));
+}
+
 InrHeader read_inr_header(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text;
@@ -44,10 +62,8 @@ InrHeader read_inr_header(const fs::path& path) {
     InrHeader header;
     header.bytes = text.size();
     std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-      const auto equals = line.find('=');
-      if (equals != std::string::npos) header.values[line.substr(0, equals)] = line.substr(equals + 1);
-    }
+    for (std::string line; std::getline(lines, line);)
+      read_inr_line(path, line, header);
     return header;
   }
   fail_volume(path, "its header has no end");
@@ -84,6 +100,8 @@ VolumeFile load_inr(const fs::path& path) {
     header.spacing[c] = header_number(path, "V" + letter, text.text("V" + letter, "1"));
   }
   header.components = header_size(path, "VDIM", text.text("VDIM", "1"));
+  if (const std::string scale = text.text("SCALE", "2**0"); scale != "2**0")
+    fail_volume(path, fmt::format("SCALE={} is not applied; 2**0 is read", scale));
   const VoxelType type = inr_type(path, text);
   const bool swapped = is_swapped(path, text);
   return read_voxels(path, header, {.file = path, .offset = text.bytes, .type = type, .swapped = swapped});

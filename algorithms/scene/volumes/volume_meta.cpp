@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/parameters.hpp"
 #include "algorithms/scene/volumes/volume_formats.hpp"
 
 /// MetaImage (itk.org/Wiki/ITK/MetaIO/Documentation): lines "Key = value" up to ElementDataFile, which tells where the
@@ -42,16 +43,73 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r") + 1 - first));
 }
 
+/// A header may have keys of its writer's own; one that nearly is a key of the format's is a mistake that would matter.
+void check_meta_key(const fs::path& path, const std::string& key, int line) {
+  static const std::vector<std::string> kRead = {"ObjectType",
+                                                 "NDims",
+                                                 "DimSize",
+                                                 "ElementSpacing",
+                                                 "ElementSize",
+                                                 "ElementType",
+                                                 "ElementNumberOfChannels",
+                                                 "ElementByteOrderMSB",
+                                                 "BinaryDataByteOrderMSB",
+                                                 "BinaryData",
+                                                 "CompressedData",
+                                                 "HeaderSize",
+                                                 "HeaderSizePerSlice",
+                                                 "ElementToIntensityFunctionSlope",
+                                                 "ElementToIntensityFunctionOffset",
+                                                 "ElementDataFile"};
+  static const std::vector<std::string> kPassedOver = {"ObjectSubType",
+                                                       "ObjectTypeName",
+                                                       "ObjectSubTypeName",
+                                                       "Comment",
+                                                       "TransformType",
+                                                       "Name",
+                                                       "ID",
+                                                       "ParentID",
+                                                       "CompressedDataSize",
+                                                       "CompressionLevel",
+                                                       "Color",
+                                                       "Position",
+                                                       "Origin",
+                                                       "Offset",
+                                                       "Orientation",
+                                                       "Rotation",
+                                                       "TransformMatrix",
+                                                       "CenterOfRotation",
+                                                       "DistanceUnits",
+                                                       "AnatomicalOrientation",
+                                                       "Modality",
+                                                       "SequenceID",
+                                                       "ElementMin",
+                                                       "ElementMax",
+                                                       "ElementNBits",
+                                                       "AcquisitionDate"};
+  const auto has = [&](const std::vector<std::string>& keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  if (has(kRead) || has(kPassedOver)) return;
+  if (const std::string near = nearest_name(key, kRead); !near.empty())
+    fail_volume(path,
+                fmt::format("'{}' in line {} of its header is no key of MetaImage; did you mean {}?", key, line, near));
+}
+
 MetaText read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   MetaText text;
   std::string line;
   constexpr std::uintmax_t kLongestHeader = 1 << 20;
-  while (text.bytes < kLongestHeader && std::getline(file, line)) {
+  for (int number = 1; text.bytes < kLongestHeader && std::getline(file, line); ++number) {
     text.bytes += line.size() + (file.eof() ? 0 : 1);
     const auto equals = line.find('=');
-    if (equals == std::string::npos) continue;
+    if (equals == std::string::npos) {
+      if (trimmed(line).empty()) continue;
+      fail_volume(path, fmt::format("line {} of its header is no 'key = value'", number));
+    }
     const std::string key = trimmed(std::string_view(line).substr(0, equals));
+    check_meta_key(path, key, number);
     if (!text.values.emplace(key, trimmed(std::string_view(line).substr(equals + 1))).second)
       fail_volume(path, fmt::format("its header states {} twice", key));
     if (key == "ElementDataFile") return text;
@@ -114,12 +172,15 @@ VolumeFile load_meta_image(const fs::path& path) {
   const VolumeHeader header = shape_of(path, text);
   VoxelBytes place;
   place.type = type_of(path, text.text("ElementType"));
-  if (!flag(path, text, "BinaryData", true)) fail_volume(path, "voxels as text are not read");
   const bool msb = flag(path, text, "ElementByteOrderMSB", flag(path, text, "BinaryDataByteOrderMSB", false));
   place.swapped = msb != (std::endian::native == std::endian::big);
-  place.packed = flag(path, text, "CompressedData", false);
+  const bool packed = flag(path, text, "CompressedData", false);
+  const bool binary = flag(path, text, "BinaryData", true);
+  if (packed && !binary) fail_volume(path, "its header says that its voxels are packed and text");
+  place.coding = packed ? VoxelCoding::packed : binary ? VoxelCoding::raw : VoxelCoding::numbers;
   for (const auto& [key, neutral] :
-       {std::pair("ElementToIntensityFunctionSlope", 1.0), std::pair("ElementToIntensityFunctionOffset", 0.0)}) {
+       {std::pair("ElementToIntensityFunctionSlope", 1.0), std::pair("ElementToIntensityFunctionOffset", 0.0),
+        std::pair("HeaderSizePerSlice", 0.0)}) {
     if (text.has(key) && header_number(path, key, text.text(key)) != neutral)
       fail_volume(path, fmt::format("{} = {} is not applied; {} is read", key, text.text(key), neutral));
   }

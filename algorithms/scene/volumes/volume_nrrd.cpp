@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <ios>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -236,11 +238,37 @@ VoxelType nrrd_type(const fs::path& path, const std::string& name) {
   fail_volume(path, fmt::format("voxels of type '{}' are not read", name));
 }
 
-bool is_swapped(const fs::path& path, const NrrdHeader& header, const VoxelType& type) {
+VoxelCoding nrrd_coding(const fs::path& path, const std::string& encoding) {
+  const std::string name = lower(encoding);
+  if (name == "raw") return VoxelCoding::raw;
+  if (name == "gzip" || name == "gz") return VoxelCoding::packed;
+  if (name == "ascii" || name == "text" || name == "txt") return VoxelCoding::numbers;
+  if (name == "hex") return VoxelCoding::hexadecimal;
+  fail_volume(path, fmt::format("its encoding is '{}'; raw, gzip, ascii and hex are read", encoding));
+}
+
+/// "line skip" lines, then "byte skip" bytes lie before the voxels; a byte skip of −1 puts them at the file's end.
+void skip_nrrd(const fs::path& path, const NrrdHeader& header, VoxelBytes& place) {
+  std::ifstream file(place.file, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(place.offset));
+  for (int lines = header_size(path, "line skip", header.text("lineskip", "0")); lines > 0; --lines) {
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    if (file.gcount() == 0) fail_volume(path, "its file ends before the lines that are to be skipped");
+    place.offset += static_cast<std::uintmax_t>(file.gcount());
+  }
+  const std::string bytes = header.text("byteskip", "0");
+  if (bytes != "0" && place.coding != VoxelCoding::raw)
+    fail_volume(path, "a byte skip other than 0 is read of raw voxels only");
+  place.from_end = bytes == "-1";
+  if (!place.from_end) place.offset += static_cast<std::uintmax_t>(header_size(path, "byte skip", bytes));
+}
+
+bool is_swapped(const fs::path& path, const NrrdHeader& header, const VoxelBytes& place) {
   const std::string endian = lower(header.text("endian"));
   if (endian == "little" || endian == "big")
     return (endian == "little") != (std::endian::native == std::endian::little);
-  if (type.bytes > 1) fail_volume(path, "its header does not tell the endian of its voxels");
+  if (place.type.bytes > 1 && place.coding != VoxelCoding::numbers)
+    fail_volume(path, "its header does not tell the endian of its voxels");
   return false;
 }
 
@@ -251,18 +279,12 @@ VolumeFile load_nrrd(const fs::path& path) {
   const VolumeHeader header = shape_of(path, text);
   VoxelBytes place;
   place.type = nrrd_type(path, text.text("type"));
-  place.swapped = is_swapped(path, text, place.type);
-  const std::string encoding = lower(text.text("encoding"));
-  place.packed = encoding == "gzip" || encoding == "gz";
-  if (!place.packed && encoding != "raw") {
-    fail_volume(path, fmt::format("its encoding is '{}'; raw and gzip are read", text.text("encoding")));
-  }
-  for (const auto& [field, shown] : {std::pair("lineskip", "line skip"), std::pair("byteskip", "byte skip")}) {
-    if (text.text(field, "0") != "0") fail_volume(path, fmt::format("a {} other than 0 is not read", shown));
-  }
+  place.coding = nrrd_coding(path, text.text("encoding"));
+  place.swapped = is_swapped(path, text, place);
   const std::string name = text.text("datafile");
   place.file = name.empty() ? path : data_file(path, name);
   place.offset = name.empty() ? text.bytes : 0;
+  skip_nrrd(path, text, place);
   return read_voxels(path, header, place);
 }
 

@@ -88,6 +88,61 @@ TEST_F(VolumeDialects, NrrdFieldsThatMatterAreNeverPassedOver) {
   EXPECT_EQ(error_of("a.nrrd", without), "its header states no dimension");
 }
 
+std::string with_text(std::string file, const std::string& bytes, const std::string& text) {
+  return file.replace(file.size() - bytes.size(), bytes.size(), text);
+}
+
+TEST_F(VolumeDialects, VoxelsAsText) {
+  std::string numbers, digits;
+  for (int i = 0; i < 24; ++i) {
+    numbers += fmt::format("{}{}{}", i == 3 ? "+" : "", i, i % 4 == 3 ? "\r\n" : i == 5 ? ", " : "\t");
+    digits += fmt::format("{:02x}00{}", i, i % 6 == 5 ? "\n" : "");
+  }
+  const std::string spacings = "spacings: 0.25 0.5 1\n";
+  const auto nrrd_of = [&](const std::string& encoding, const std::string& text) {
+    std::string file = with_text(nrrd(spacings), shorts(), text);
+    return file.replace(file.find("encoding: raw"), 13, "encoding: " + encoding);
+  };
+  for (const char* encoding : {"ascii", "text", "TXT"})
+    expect_spacing("a.nrrd", nrrd_of(encoding, numbers), kSpacing);
+  std::string without = nrrd_of("ascii", numbers);
+  expect_spacing("a.nrrd", without.erase(without.find("endian"), 15), kSpacing);  // text has none
+  expect_spacing("a.nrrd", nrrd_of("hex", digits), kSpacing);
+  write("v.txt", "two lines\nof text\n" + numbers);
+  std::string detached = nrrd_of("ascii", "");
+  detached.replace(detached.find("encoding"), 0, "line skip: 2\ndata file: v.txt\n");
+  expect_spacing("a.nhdr", detached, kSpacing);
+  const std::string meta_text = "BinaryData = False\nElementSpacing = 0.25 0.5 1\n";
+  expect_spacing("a.mha", with_text(meta(meta_text), shorts(), numbers), kSpacing);
+
+  EXPECT_EQ(error_of("a.nrrd", nrrd_of("ascii", numbers + "24")), "more than the 24 voxels that its header promises");
+  EXPECT_EQ(error_of("a.nrrd", nrrd_of("ascii", numbers.substr(0, numbers.size() - 4))),
+            "23 voxels where its header promises 24");
+  EXPECT_EQ(error_of("a.nrrd", nrrd_of("ascii", "1 2 3")), "5 bytes of text hold no 24 voxels");
+  for (const char* wrong : {"0,5", "32768", "0.5", "x", "nan", "1e999", "--1"})
+    EXPECT_EQ(error_of("a.nrrd", nrrd_of("ascii", wrong + (" " + numbers))),
+              fmt::format("voxel 0 is '{}', no number of its type", wrong));
+  EXPECT_EQ(error_of("a.nrrd", nrrd_of("hex", digits + "00")), "more than the 48 bytes that its header promises");
+  EXPECT_EQ(error_of("a.nrrd", nrrd_of("hex", "0g" + digits.substr(2))),
+            "byte 0x67 among its voxels is no hexadecimal digit");
+  EXPECT_EQ(error_of("a.nrrd", nrrd_of("hex", digits.substr(0, 50))), "50 digits hold no 48 bytes");
+  EXPECT_EQ(error_of("a.mha", with_text(meta(meta_text + "CompressedData = True\n"), shorts(), numbers)),
+            "its header says that its voxels are packed and text");
+}
+
+TEST_F(VolumeDialects, NrrdSkips) {
+  const auto skipping = [&](const std::string& fields, const std::string& before, const std::string& behind = "") {
+    return with_text(nrrd("spacings: 0.25 0.5 1\n" + fields), shorts(), before + shorts() + behind);
+  };
+  expect_spacing("a.nrrd", skipping("byte skip: 3\n", "abc"), kSpacing);
+  expect_spacing("a.nrrd", skipping("byte skip: -1\n", "whatever"), kSpacing);
+  expect_spacing("a.nrrd", skipping("line skip: 2\nbyte skip: 1\n", "a\n\nb"), kSpacing);
+  EXPECT_EQ(error_of("a.nrrd", skipping("byte skip: 3\n", "ab")), "47 bytes of voxels where its header promises 48");
+  EXPECT_EQ(error_of("a.nrrd", skipping("byte skip: -2\n", "ab")), "'-2' is no size for byte skip in its header");
+  EXPECT_EQ(error_of("a.nrrd", skipping("line skip: 900\n", "a\n")),
+            "its file ends before the lines that are to be skipped");
+}
+
 TEST_F(VolumeDialects, SeveralGzipMembersAreOneStream) {
   const auto member = [](const std::string& bytes) {
     std::string packed(bytes.size() + 100, '\0');
@@ -133,6 +188,12 @@ TEST_F(VolumeDialects, MetaImages) {
             "ElementByteOrderMSB = maybe is neither True nor False");
   EXPECT_EQ(error_of("a.mha", meta("ElementToIntensityFunctionSlope = 2\n")),
             "ElementToIntensityFunctionSlope = 2 is not applied; 1 is read");
+  EXPECT_EQ(error_of("a.mha", meta("ElementSpacng = 1 1 2\n")),
+            "'ElementSpacng' in line 5 of its header is no key of MetaImage; did you mean ElementSpacing?");
+  EXPECT_EQ(error_of("a.mha", meta("elementspacing = 1 1 2\n")),
+            "'elementspacing' in line 5 of its header is no key of MetaImage; did you mean ElementSpacing?");
+  EXPECT_EQ(error_of("a.mha", meta("ElementSpacing: 1 1 2\n")), "line 5 of its header is no 'key = value'");
+  expect_spacing("a.mha", meta("ElementSpacing = 0.25 0.5 1\n\nScanner = ours\nOffset = 1 2 3\n"), kSpacing);
   std::string half = meta("");
   half.replace(half.find("MET_SHORT"), 9, "MET_HALF");
   EXPECT_EQ(error_of("a.mha", half), "voxels of ElementType 'MET_HALF' are not read");

@@ -140,7 +140,8 @@ TEST_F(VolumeFiles, NrrdErrors) {
             "192 bytes of voxels where its header promises 96");
   EXPECT_EQ(error_of("a.nrrd", kNrrd + "encoding: gzip\n\n" + pack(raw(), true) + "junk"),
             "something follows its packed voxels");
-  EXPECT_EQ(error_of("a.nrrd", kNrrd + "encoding: hex\n\n00"), "its encoding is 'hex'; raw and gzip are read");
+  EXPECT_EQ(error_of("a.nrrd", kNrrd + "encoding: bzip2\n\n00"),
+            "its encoding is 'bzip2'; raw, gzip, ascii and hex are read");
   EXPECT_EQ(error_of("a.nrrd", with(kNrrd, "4 3 2", "4 3 0") + end), "4 x 3 x 0 voxels; every axis needs at least one");
   EXPECT_EQ(error_of("a.nrrd", with(kNrrd, "4 3 2", "4 -3 2") + end), "'-3' is no size for sizes in its header");
   EXPECT_EQ(error_of("a.nrrd", with(kNrrd, "4 3 2", "4 3") + end), "2 sizes where 3 are needed");
@@ -159,7 +160,8 @@ TEST_F(VolumeFiles, NrrdErrors) {
   EXPECT_EQ(error_of("a.nrrd", with(kNrrd, "float", "block") + end), "voxels of type 'block' are not read");
   EXPECT_EQ(error_of("a.nrrd", with(kNrrd, "endian: little\n", "") + end + raw()),
             "its header does not tell the endian of its voxels");
-  EXPECT_EQ(error_of("a.nrrd", kNrrd + "byte skip: 4\n" + end), "a byte skip other than 0 is not read");
+  EXPECT_EQ(error_of("a.nrrd", kNrrd + "byte skip: 4\nencoding: gzip\n\n"),
+            "a byte skip other than 0 is read of raw voxels only");
   EXPECT_EQ(error_of("a.nhdr", kNrrd + "data file: none.raw\n" + end),
             "its data file '" + file("none.raw").string() + "' is missing");
   EXPECT_EQ(error_of("a.nhdr", kNrrd + "data file: LIST\n" + end), "its voxels lie in several files; one is read");
@@ -277,6 +279,10 @@ TEST_F(VolumeFiles, InrErrors) {
             "voxels of TYPE=packed and PIXSIZE=32 are not read");
   EXPECT_EQ(error_of("a.inr", inr("XDIM=4\nYDIM=3\nZDIM=2\nVDIM=3\nTYPE=float\nPIXSIZE=32 bits\nCPU=pc\n") + raw()),
             "3 values a voxel; one is needed");
+  EXPECT_EQ(error_of("a.inr", inr(shape + "CPU=decm\nVZZ=2\n") + raw()), "'VZZ' in its header is no key of INRIMAGE-4");
+  EXPECT_EQ(error_of("a.inr", inr(shape + "CPU=decm\nXDIM=4\n") + raw()), "its header states XDIM twice");
+  EXPECT_EQ(error_of("a.inr", inr(shape + "CPU=decm\nSCALE=2**-8\n") + raw()),
+            "SCALE=2**-8 is not applied; 2**0 is read");
 }
 
 TEST_F(VolumeFiles, ValuesThatAreNotFiniteAreFound) {
