@@ -97,14 +97,59 @@ class GltfReader {
         matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
       return matrix;
     }
-    const auto t = numbers<3>(node, "translation", {0, 0, 0});
-    const auto r = numbers<4>(node, "rotation", {0, 0, 0, 1});
-    const auto s = numbers<3>(node, "scale", {1, 1, 1});
+    return composed(numbers<3>(node, "translation", {0, 0, 0}), numbers<4>(node, "rotation", {0, 0, 0, 1}),
+                    numbers<3>(node, "scale", {1, 1, 1}));
+  }
+
+  /// Scaled, then turned by a quaternion, then moved.
+  static glm::dmat4 composed(const std::array<double, 3>& t, const std::array<double, 4>& r,
+                             const std::array<double, 3>& s) {
     glm::dmat4 matrix = glm::mat4_cast(glm::dquat(r[3], r[0], r[1], r[2]));
     for (int c = 0; c < 3; ++c)
       matrix[c] *= s[static_cast<std::size_t>(c)];
     matrix[3] = glm::dvec4(t[0], t[1], t[2], 1);
     return matrix;
+  }
+
+  /// Where the node's mesh stands: once, or as often as EXT_mesh_gpu_instancing says.
+  std::vector<glm::dmat4> instances_of(const json& node, const glm::dmat4& to_mesh) const {
+    const auto extensions = node.find("extensions");
+    if (extensions == node.end() || !extensions->is_object() || !extensions->contains("EXT_mesh_gpu_instancing"))
+      return {to_mesh};
+    const json& instancing = (*extensions)["EXT_mesh_gpu_instancing"];
+    if (!instancing.is_object() || !instancing.contains("attributes") || !instancing["attributes"].is_object())
+      file_.fail("EXT_mesh_gpu_instancing has no attributes");
+    const auto attribute = [&](const char* name, std::size_t components) {
+      const json& attributes = instancing["attributes"];
+      if (!attributes.contains(name)) return std::vector<double>();
+      // Without data of its own a file of a few bytes could ask for a million copies of a mesh.
+      if (!file_.object("accessors", attributes[name], name).contains("bufferView"))
+        file_.fail(fmt::format("{} of EXT_mesh_gpu_instancing has no data", name));
+      return file_.numbers(attributes[name], components, name);
+    };
+    const std::vector<double> t = attribute("TRANSLATION", 3), r = attribute("ROTATION", 4), s = attribute("SCALE", 3);
+    const std::size_t count = std::max({t.size() / 3, r.size() / 4, s.size() / 3});
+    if (count == 0) file_.fail("EXT_mesh_gpu_instancing has none of TRANSLATION, ROTATION and SCALE");
+    if ((!t.empty() && t.size() != 3 * count) || (!r.empty() && r.size() != 4 * count) ||
+        (!s.empty() && s.size() != 3 * count))
+      file_.fail("the attributes of EXT_mesh_gpu_instancing are of different lengths");
+    std::vector<glm::dmat4> all;
+    all.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<double, 3> move{0, 0, 0}, scale{1, 1, 1};
+      std::array<double, 4> turn{0, 0, 0, 1};
+      if (!t.empty()) std::copy_n(t.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, move.begin());
+      if (!s.empty()) std::copy_n(s.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, scale.begin());
+      if (!r.empty()) {
+        // Stored as integers, a quaternion has a length of only about 1.
+        const glm::dvec4 stored(r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]);
+        if (!(glm::length(stored) > 0)) file_.fail(fmt::format("ROTATION {} of EXT_mesh_gpu_instancing is 0", i));
+        for (int c = 0; c < 4; ++c)
+          turn[static_cast<std::size_t>(c)] = stored[c] / glm::length(stored);
+      }
+      all.push_back(to_mesh * composed(move, turn, scale));
+    }
+    return all;
   }
 
   void add_node(const json& index, const glm::dmat4& parent, int depth) {
@@ -113,11 +158,10 @@ class GltfReader {
     if (!visited_.insert(index.get<std::size_t>()).second)
       file_.fail(fmt::format("node {} has two parents", index.dump()));
     const glm::dmat4 to_mesh = parent * transform(node);
-    if (node.contains("extensions") && node["extensions"].is_object() &&
-        node["extensions"].contains("EXT_mesh_gpu_instancing"))
-      file_.fail(
-          fmt::format("node {} is drawn many times (EXT_mesh_gpu_instancing), which is not supported", index.dump()));
-    if (node.contains("mesh")) add_mesh(file_.object("meshes", node["mesh"], "a node"), to_mesh);
+    if (node.contains("mesh")) {
+      const json& mesh = file_.object("meshes", node["mesh"], "a node");
+      add_mesh(mesh, weights_of(node.contains("weights") ? node : mesh), instances_of(node, to_mesh));
+    }
     skinned_ = skinned_ || node.contains("skin");
     if (!node.contains("children")) return;
     if (!node["children"].is_array()) file_.fail("a node's children are no list");
@@ -125,11 +169,23 @@ class GltfReader {
       add_node(child, to_mesh, depth + 1);
   }
 
-  void add_mesh(const json& mesh, const glm::dmat4& to_mesh) {
+  /// How much of each morph target a mesh takes (3.7.2.2); a node's weights come before its mesh's.
+  std::vector<double> weights_of(const json& owner) const {
+    std::vector<double> weights;
+    if (!owner.contains("weights")) return weights;
+    if (!owner["weights"].is_array()) file_.fail("weights is no list");
+    for (const json& weight : owner["weights"]) {
+      if (!weight.is_number()) file_.fail("a weight is no number");
+      weights.push_back(weight.get<double>());
+    }
+    return weights;
+  }
+
+  void add_mesh(const json& mesh, const std::vector<double>& weights, const std::vector<glm::dmat4>& instances) {
     const auto primitives = mesh.find("primitives");
     if (primitives == mesh.end() || !primitives->is_array()) file_.fail("a mesh has no primitives");
     for (const json& primitive : *primitives)
-      add_primitive(primitive, to_mesh);
+      add_primitive(primitive, weights, instances);
   }
 
   Vertices vertices_of(const json& primitive) {
@@ -167,7 +223,27 @@ class GltfReader {
     }
   }
 
-  void add_primitive(const json& primitive, const glm::dmat4& to_mesh) {
+  /// Adds the targets' displacements, each by its weight.
+  void morph(const json& primitive, const std::vector<double>& weights, Vertices& v) const {
+    const auto targets = primitive.find("targets");
+    if (targets == primitive.end()) return;
+    if (!targets->is_array()) file_.fail("a primitive's targets are no list");
+    for (std::size_t i = 0; i < std::min(targets->size(), weights.size()); ++i) {
+      const json& target = (*targets)[i];
+      if (weights[i] == 0) continue;
+      if (!target.is_object()) file_.fail("a morph target is no object");
+      for (const auto& [name, values] : {std::pair("POSITION", &v.positions), std::pair("NORMAL", &v.normals)}) {
+        if (!target.contains(name) || values->empty()) continue;
+        const std::vector<double> moves = file_.numbers(target[name], 3, name);
+        if (moves.size() != values->size()) file_.fail("a morph target has another number of vertices");
+        for (std::size_t j = 0; j < moves.size(); ++j)
+          (*values)[j] += weights[i] * moves[j];
+      }
+    }
+  }
+
+  void add_primitive(const json& primitive, const std::vector<double>& weights,
+                     const std::vector<glm::dmat4>& instances) {
     if (!primitive.is_object()) file_.fail("a primitive is no object");
     const std::uint64_t mode = file_.integer(primitive, "mode", 4, "a primitive");
     if (mode < 4) {
@@ -175,12 +251,9 @@ class GltfReader {
       return;
     }
     if (mode > 6) file_.fail(fmt::format("a primitive's mode is {}", mode));
-    const Vertices v = vertices_of(primitive);
+    Vertices v = vertices_of(primitive);
+    morph(primitive, weights, v);
     const std::size_t count = v.positions.size() / 3;
-    const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
-    append(v, count, to_mesh);
-    if (mesh_.positions.size() > 3 * kMaxTriangles || mesh_.triangles.size() > kMaxTriangles)
-      file_.fail(fmt::format("more than {} triangles", kMaxTriangles));
     std::vector<std::uint32_t> corners;
     if (primitive.contains("indices")) {
       corners = file_.indices(primitive["indices"]);
@@ -192,7 +265,15 @@ class GltfReader {
     for (const std::uint32_t corner : corners)
       if (corner >= count) file_.fail(fmt::format("a primitive names vertex {} of {}", corner, count));
     if (mode == 4 && corners.size() % 3 != 0) file_.fail(fmt::format("{} corners make no triangles", corners.size()));
-    add_triangles(mode, corners, first, glm::determinant(glm::dmat3(to_mesh)) < 0);
+    const std::size_t added = std::max({mode == 4 ? corners.size() / 3 : corners.size(), (count + 2) / 3, 1UL});
+    const std::size_t used = std::max(mesh_.triangles.size(), (mesh_.positions.size() + 2) / 3);
+    if (used > kMaxTriangles || added > (kMaxTriangles - used) / instances.size())
+      file_.fail(fmt::format("more than {} triangles", kMaxTriangles));
+    for (const glm::dmat4& to_mesh : instances) {
+      const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
+      append(v, count, to_mesh);
+      add_triangles(mode, corners, first, glm::determinant(glm::dmat3(to_mesh)) < 0);
+    }
   }
 
   /// 3.7.2.1: strips turn every other triangle, fans share their first corner. 3.7.4: where the node mirrors, the
