@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <map>
 #include <numbers>
 #include <sstream>
 #include <vector>
@@ -24,13 +23,13 @@
 #include <vtkSVGExporter.h>
 #include <vtkSmartPointer.h>
 #include <vtkTextProperty.h>
-#include <vtkTextRenderer.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLUtilities.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/scratch_file.hpp"
-#include "sweeps/workers/process.hpp"
+#include "plots/charts/text_font.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -62,53 +61,13 @@ class PaintItem : public vtkContextItem {
 };
 vtkStandardNewMacro(PaintItem);
 
-/// The characters of a UTF-8 text.
-std::vector<std::string> characters(const std::string& text) {
-  std::vector<std::string> all;
-  for (const char c : text) {
-    const bool continues = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
-    if (all.empty() || !continues) all.emplace_back();
-    all.back() += c;
-  }
-  return all;
-}
-
-int drawn_width(vtkTextProperty* property, const std::string& text) {
-  int box[4] = {0, 0, 0, 0};
-  if (!vtkTextRenderer::GetInstance()->GetBoundingBox(property, text, box, 72)) return 0;
-  return box[1] - box[0] + 1;
-}
-
-/// VTK's built-in font lacks most of Unicode, and what it lacks is not drawn and takes no room.
-bool built_in_font_has(const std::string& text) {
-  static std::map<std::string, bool> known;
-  vtkNew<vtkTextProperty> property;
+/// Sets the property up, and returns the text as it is to be drawn with it.
+std::string apply(const TextStyle& style, const std::string& text, vtkTextProperty* property) {
+  const DrawnText drawn = drawn_text(text, style.bold);
   property->SetFontFamilyToArial();
-  property->SetFontSize(24);
-  for (const std::string& character : characters(text)) {
-    if (character.size() == 1) continue;
-    const auto [at, is_new] = known.emplace(character, false);
-    if (is_new) at->second = drawn_width(property, "n" + character + "n") > drawn_width(property, "nn");
-    if (!at->second) return false;
-  }
-  return true;
-}
-
-/// The file of a font that has nearly everything; what it lacks it draws as a box.
-const std::string& full_font(bool bold) {
-  static const auto find = [](const char* pattern) {
-    const sweeps::ProcessResult result = sweeps::run_process({"fc-match", "--format=%{file}", pattern});
-    return result.status == 0 ? result.output : std::string();
-  };
-  static const std::string plain = find("DejaVu Sans:style=Book"), heavy = find("DejaVu Sans:style=Bold");
-  return bold ? heavy : plain;
-}
-
-void apply(const TextStyle& style, const std::string& text, vtkTextProperty* property) {
-  property->SetFontFamilyToArial();
-  if (!built_in_font_has(text) && !full_font(style.bold).empty()) {
+  if (!drawn.font_file.empty()) {
     property->SetFontFamily(VTK_FONT_FILE);
-    property->SetFontFile(full_font(style.bold).c_str());
+    property->SetFontFile(drawn.font_file.c_str());
   }
   property->SetFontSize(static_cast<int>(std::lround(style.size_px)));
   property->SetBold(style.bold ? 1 : 0);
@@ -128,6 +87,7 @@ void apply(const TextStyle& style, const std::string& text, vtkTextProperty* pro
   set(
       style.vertical, [&] { property->SetVerticalJustificationToBottom(); },
       [&] { property->SetVerticalJustificationToCentered(); }, [&] { property->SetVerticalJustificationToTop(); });
+  return drawn.text;
 }
 
 bool is_invisible(vtkXMLDataElement* element) {
@@ -175,9 +135,9 @@ void repair_element(vtkXMLDataElement* element, int height_px) {
 
 double text_width(const std::string& text, const TextStyle& style) {
   vtkNew<vtkTextProperty> property;
-  apply(style, text, property);
+  const std::string drawn = apply(style, text, property);
   property->SetOrientation(0);
-  return drawn_width(property, text);
+  return drawn_width(property, drawn);
 }
 
 std::vector<std::string> wrap_text(const std::string& text, const TextStyle& style, double width) {
@@ -193,8 +153,8 @@ std::vector<std::string> wrap_text(const std::string& text, const TextStyle& sty
 }
 
 void Painter::text(double x, double y, const std::string& string, const TextStyle& style) {
-  apply(style, string, context_->GetTextProp());
-  context_->DrawString(static_cast<float>(x), static_cast<float>(y), string);
+  const std::string drawn = apply(style, string, context_->GetTextProp());
+  context_->DrawString(static_cast<float>(x), static_cast<float>(y), drawn);
 }
 
 void Painter::line(double x0, double y0, double x1, double y1, const Color& color, double width, Line type) {
@@ -286,8 +246,8 @@ std::string draw_svg(const SvgScene& scene) {
   const ScratchFile file;
   vtkNew<vtkSVGExporter> exporter;
   exporter->SetRenderWindow(window);
-  exporter->SetTitle(scene.title.c_str());
-  exporter->SetDescription(scene.description.c_str());
+  exporter->SetTitle(printable(scene.title).c_str());  // XML has no control characters
+  exporter->SetDescription(printable(scene.description).c_str());
   exporter->SetFileName(file.path().c_str());
   exporter->Write();  // the plots find their places in the first pass and are drawn in the second
   exporter->Write();

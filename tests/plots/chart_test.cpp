@@ -17,6 +17,8 @@
 
 #include "algorithms/scene/images/image.hpp"
 #include "gl/error.hpp"
+#include "plots/charts/svg_scene.hpp"
+#include "plots/charts/text_font.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {
@@ -85,6 +87,20 @@ TEST(Chart, SvgIsWellFormedAndEscaped) {
   Chart fewer = sample();
   fewer.series.pop_back();
   EXPECT_GT(parsed.paths, parse(to_svg(fewer)).paths) << "a second series draws more";
+}
+
+// VTK draws nothing, in no room, for a character that its font lacks: a text would lose it in silence.
+TEST(Chart, EveryCharacterIsDrawnOrSpelledOut) {
+  const TextStyle style{.size_px = 24};
+  for (const std::string character : {"²", "⁻", "φ", "—", "日", "😀"})
+    EXPECT_GT(text_width("n" + character + "n", style), text_width("nn", style) + 2) << character;
+  // U+0378 is assigned to nothing, so that no font has it.
+  EXPECT_EQ(drawn_text("a\u0378b", false).text, "aU+0378b");
+  EXPECT_EQ(drawn_text("a\n\x1b b\xff\xed\xa0\x80", false).text, "a\\n\\x1b b\\xff\\xed\\xa0\\x80");
+  Chart odd = sample();
+  odd.title = odd.series[0].label = "a\x01\xfe";
+  EXPECT_TRUE(parse(to_svg(odd)).well_formed);
+  EXPECT_EQ(drawn_text("10\u207b\u00b3 µm", true).text, "10\u207b\u00b3 µm");
 }
 
 TEST(Chart, RefusesWhatCannotBeDrawn) {
