@@ -1,11 +1,11 @@
 // pellucid compare.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/picture_file.hpp"
 #include "gl/error.hpp"
 #include "sandbox/arguments.hpp"
@@ -48,12 +49,10 @@ Bound parse_bound(const std::string& text, bool above, const std::vector<std::st
   const char* option = above ? "--fail-above" : "--fail-below";
   const std::size_t equals = text.find('=');
   Bound out{text.substr(0, equals), 0, above};
-  std::size_t used = 0;
-  try {
-    if (equals != std::string::npos) out.limit = std::stod(text.substr(equals + 1), &used);
-  } catch (const std::logic_error&) {
-  }
-  if (used == 0 || equals + 1 + used != text.size() || !std::isfinite(out.limit))
+  const char* const first = text.data() + std::min(text.size(), equals + 1);
+  const auto [end, error] = std::from_chars(first, text.data() + text.size(), out.limit);
+  if (equals == std::string::npos || error != std::errc{} || end != text.data() + text.size() ||
+      !std::isfinite(out.limit))
     throw InputError(fmt::format("{} {} is not metric=number, for example flip_mean=0.05", option, text));
   if (std::find(columns.begin(), columns.end(), out.column) == columns.end()) {
     const std::string near = nearest_name(out.column, columns);
@@ -191,7 +190,7 @@ int compare(const Options& options) {
   Mask mask = find_mask(options, reference);
   drop_empty_mask(options, mask, notes);
   for (const std::string& note : notes)
-    fmt::print(stderr, "note: {}\n", note);
+    tell("note: {}", note);
   const bool display_encoded = reference.display_encoded;
   std::vector<Bound> bounds;
   for (const std::string& text : options.fail_above)
@@ -227,8 +226,8 @@ int compare(const Options& options) {
     print_text(comparison, result, options, display_encoded, metrics, mask.source);
   }
   for (const Bound* bound : broken)
-    fmt::print(stderr, "{} = {} is {} {}\n", bound->column, text_of(result.at(bound->column)),
-               bound->above ? "above" : "below", bound->limit);
+    tell("{} = {} is {} {}", bound->column, text_of(result.at(bound->column)), bound->above ? "above" : "below",
+         bound->limit);
   return broken.empty() ? kDone : kRegression;
 }
 

@@ -148,7 +148,8 @@ void add_view(cli::App& root, std::vector<Command>& commands) {
   app->add_option("--folder", viewer.folder, "Where pictures and stores are saved")
       ->check(cli::ExistingDirectory)
       ->capture_default_str();
-  app->add_option("--exposure", viewer.exposure_ev, "Stops by which the picture is brightened");
+  app->add_option("--exposure", viewer.exposure_ev, "Stops by which the picture is brightened")
+      ->check(cli::Range(-64.0, 64.0));
   app->add_option("--display", viewer.display, "OpenColorIO display; the config's default without it");
   app->add_option("--display-view", viewer.display_view, "OpenColorIO view; the config's default without it");
   app->add_option("--look", viewer.look, "OpenColorIO look; none without it");

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -63,6 +65,20 @@ void check_field(const std::string& field, const std::vector<std::string>& names
                                 : fmt::format("no row has a field '{}'; did you mean '{}'?", field, near));
 }
 
+/// A text never meets a condition on numbers; asked for by mistake, it would look as if there were no such rows.
+void check_value(const RowCondition& condition, const std::vector<json>& flat_rows) {
+  if (const auto wanted = number(condition.value); wanted && std::isfinite(*wanted)) return;
+  bool any = false;
+  for (const json& row : flat_rows) {
+    const auto found = row.find(condition.field);
+    if (found == row.end() || found->is_null()) continue;
+    if (!found->is_number()) return;
+    any = true;
+  }
+  if (any)
+    throw InputError(fmt::format("'{}' holds numbers; '{}' is no finite number", condition.field, condition.value));
+}
+
 }  // namespace
 
 RowCondition parse_row_condition(const std::string& text) {
@@ -108,13 +124,16 @@ std::vector<std::string> field_names(const std::vector<json>& rows) {
 std::vector<json> select_rows(const std::vector<json>& rows, const std::vector<RowCondition>& conditions) {
   if (conditions.empty() || rows.empty()) return rows;
   const std::vector<std::string> names = field_names(rows);
-  for (const RowCondition& condition : conditions)
+  std::vector<json> flat;
+  std::transform(rows.begin(), rows.end(), std::back_inserter(flat), opened);
+  for (const RowCondition& condition : conditions) {
     check_field(condition.field, names);
+    check_value(condition, flat);
+  }
   std::vector<json> result;
-  for (const json& row : rows) {
-    const json flat = opened(row);
-    if (std::all_of(conditions.begin(), conditions.end(), [&](const auto& c) { return meets(flat, c); }))
-      result.push_back(row);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (std::all_of(conditions.begin(), conditions.end(), [&](const auto& c) { return meets(flat[i], c); }))
+      result.push_back(rows[i]);
   }
   return result;
 }

@@ -18,7 +18,7 @@ struct RowCondition {
 RowCondition parse_row_condition(const std::string&);
 
 /// The rows that meet all conditions. A row without the field meets none but `!=`. Throws InputError, with the nearest
-/// name, when no row has a field of that name.
+/// name, when no row has a field of that name, and when a field of numbers is compared with something else.
 std::vector<nlohmann::json> select_rows(const std::vector<nlohmann::json>& rows, const std::vector<RowCondition>&);
 
 /// Every name of a field, an object's members opened (`pass_ms.fog`), sorted.

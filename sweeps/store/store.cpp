@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -53,6 +54,11 @@ Store::Store(const std::filesystem::path& path, Access access) {
     throw InputError(
         fmt::format("store '{}' would forget its rows; give a file's name (./{} for one called so)", name, name));
   if (access == Access::write) {
+    // Beside it lie its journal and its folder of references, whose names are longer; a name has 255 bytes at most.
+    constexpr std::size_t kLongest = 255 - std::string_view(".references").size();
+    if (const std::size_t length = path.filename().string().size(); length > kLongest)
+      throw InputError(
+          fmt::format("store '{}': its name has {} bytes; {} are possible", path.string(), length, kLongest));
     std::error_code error;
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     std::filesystem::create_directories(folder, error);

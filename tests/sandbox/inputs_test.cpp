@@ -38,6 +38,12 @@ TEST(Inputs, NumbersOfTheCommandLineAreFinite) {
 
 TEST(Inputs, AnErrorIsOneLineWhateverTheNameHolds) {
   EXPECT_TRUE(refused(pellucid({"compare", "a\nb\x1b[31m\f.exr", "b.exr"}), 2, {"a\\nb\\x1b[31m\\x0c.exr"}));
+  // So is the line that tells what was done.
+  const TemporaryFolder folder;
+  const Outcome done = pellucid({"render", name_of(write_small_scene(folder)), "-t", "volume_slices", "--size", "8x8",
+                                 "-o", name_of(folder / "a\nb\u009b.exr")});
+  EXPECT_TRUE(succeeded(done));
+  EXPECT_NE(done.err.find("a\\nb\\xc2\\x9b.exr: volume_slices"), std::string::npos) << done.err;
 }
 
 TEST(Inputs, WhatIsReadIsNotOverwritten) {
@@ -54,6 +60,12 @@ TEST(Inputs, WhatIsReadIsNotOverwritten) {
   EXPECT_TRUE(
       refused(pellucid({"reference", name_of(scene), "--size", "8x8", "-o", name_of(a)}), 2, {"-o", "overwrite"}));
   EXPECT_EQ(read_file(a), before);
+  const auto paper = write_file(folder / "p.toml", read_file(std::filesystem::path(PELLUCID_SOURCE_DIR) /
+                                                             "algorithms/sampling_hulls/paper.toml"));
+  EXPECT_TRUE(refused(pellucid({"table", name_of(paper) + ":table1", "-o", name_of(paper)}), 2, {"-o", "overwrite"}));
+  const std::string longest = std::string(242, 's') + ".db";
+  EXPECT_TRUE(refused(pellucid({"sweep", "run", "sampling_hulls_table1", "--store", longest}), 2,
+                      {"its name has 245 bytes; 244 are possible"}));
   for (const char* store : {":memory:", "file:x?mode=memory"})
     EXPECT_TRUE(refused(pellucid({"sweep", "run", "sampling_hulls_table1", "--store", store}), 2, {store, "forget"}));
 }

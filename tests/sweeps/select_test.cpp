@@ -38,6 +38,9 @@ TEST(SelectRows, ComparesNumbersAsNumbers) {
   EXPECT_EQ(count({"scene.density!=0.9"}), 2U);
   EXPECT_EQ(count({"pass_ms.fog>1"}), 1U);
   EXPECT_EQ(count({"technique=b"}), 1U);
+  EXPECT_EQ(input_error([] { count({"hulls=many"}); }), "'hulls' holds numbers; 'many' is no finite number");
+  EXPECT_EQ(input_error([] { count({"scene.density<nan"}); }),
+            "'scene.density' holds numbers; 'nan' is no finite number");
 }
 
 TEST(SelectRows, ErrorsSayWhatIsMeant) {

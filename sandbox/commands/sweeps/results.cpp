@@ -14,7 +14,9 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/scene/files/atomic_file.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
+#include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/papers/paper.hpp"
 #include "sweeps/store/csv.hpp"
@@ -80,6 +82,10 @@ int table(const TableOptions& options) {
   if (!options.device.empty() && options.store.empty()) {
     throw InputError("--device-name chooses among a store's devices; --store S.db is missing");
   }
+  if (!options.output.empty()) {
+    check_no_input(options.output, options.store, "-o");
+    if (!entry.paper->built_in) check_no_input(options.output, entry.paper->file.shown, "-o");
+  }
   const std::vector<nlohmann::json> rows =
       options.store.empty() ? std::vector<nlohmann::json>{} : read_rows(options.store);
   const Table filled = make_table(entry, rows, options.device);
@@ -90,13 +96,13 @@ int table(const TableOptions& options) {
     write_text_file(options.output, text);
   }
   if (filled.sweep.empty()) {
-    fmt::print(stderr, "{}; to fill the table: pellucid sweep run {} --store {}\n",
-               options.store.empty() ? "no store was named, so the numbers are the paper's alone"
-                                     : fmt::format("{} has no rows of {}", options.store, filled.info.spec),
-               filled.info.spec_path, options.store.empty() ? "S.db" : options.store);
+    tell("{}; to fill the table: pellucid sweep run {} --store {}",
+         options.store.empty() ? "no store was named, so the numbers are the paper's alone"
+                               : fmt::format("{} has no rows of {}", options.store, filled.info.spec),
+         filled.info.spec_path, options.store.empty() ? "S.db" : options.store);
   } else if (format == TableFormat::csv || format == TableFormat::json) {
     for (const std::string& note : filled.notes)
-      fmt::print(stderr, "note: {}\n", note);
+      tell("note: {}", note);
   }
   return kDone;
 }
