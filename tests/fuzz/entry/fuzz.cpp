@@ -1,13 +1,38 @@
-// The entry point of libFuzzer; PELLUCID_FUZZ_TARGET names the target.
+// The entry points of libFuzzer, which passes over options that begin with two dashes: --target=NAME is ours.
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
-#include <string>
+#include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "tests/fuzz/targets.hpp"
+
+namespace {
+
+const pellucid::fuzz::Target* chosen = nullptr;
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  constexpr std::string_view kOption = "--target=";
+  for (int i = 1; i < *argc; ++i) {
+    const std::string_view argument = (*argv)[i];
+    if (!argument.starts_with(kOption)) continue;
+    for (const pellucid::fuzz::Target& target : pellucid::fuzz::targets())
+      if (target.name == argument.substr(kOption.size())) chosen = &target;
+  }
+  if (chosen != nullptr) return 0;
+  fmt::print(stderr, "usage: fuzz --target=NAME [libFuzzer's options] [FOLDER...]\nNAME is one of");
+  for (const pellucid::fuzz::Target& target : pellucid::fuzz::targets())
+    fmt::print(stderr, " {}", target.name);
+  fmt::print(stderr, "\n");
+  std::exit(2);
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace fs = std::filesystem;
@@ -20,7 +45,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fs::create_directories(made);
     return made;
   }();
-  static const pellucid::fuzz::Target& target = pellucid::fuzz::target(PELLUCID_FUZZ_TARGET);
-  pellucid::fuzz::run(target, folder, {reinterpret_cast<const char*>(data), size});
+  pellucid::fuzz::run(*chosen, folder, {reinterpret_cast<const char*>(data), size});
   return 0;
 }
