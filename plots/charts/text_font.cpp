@@ -36,7 +36,7 @@ std::vector<std::pair<std::uint32_t, std::string>> characters(const std::string&
   return all;
 }
 
-/// What VTK's font lacks takes no room.
+/// A character that VTK's font lacks takes no room.
 bool built_in_font_has(const std::string& character) {
   static std::map<std::string, bool> known;
   if (character.size() == 1) return true;
