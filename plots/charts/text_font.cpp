@@ -55,9 +55,11 @@ struct Font {
   std::string file;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;
 
+  /// VTK draws nothing beyond U+FFFF, whatever the font has.
   bool has(std::uint32_t code) const {
-    return std::any_of(ranges.begin(), ranges.end(),
-                       [&](const auto& range) { return code >= range.first && code <= range.second; });
+    return code <= 0xFFFF && std::any_of(ranges.begin(), ranges.end(), [&](const auto& range) {
+             return code >= range.first && code <= range.second;
+           });
   }
 };
 
