@@ -59,7 +59,7 @@ std::string shard_script(const SlurmOptions& o, bool timed) {
   text += "set -uo pipefail\n" + names(o);
   text += fmt::format("shard=$SLURM_ARRAY_TASK_ID/{}\nkept=$folder/shards/{}-$SLURM_ARRAY_TASK_ID.db\nkind={}\n",
                       o.shards, job, timed ? "timed" : "untimed");
-  return text + R"(rm -f "${kept%.db}.done"  # says to the merge that nothing is left of this shard
+  return text + R"sh(rm -f "${kept%.db}.done"  # says to the merge that nothing is left of this shard
 
 # The store lies on the node's own disk while it grows, and is copied back whole.
 disk=$(mktemp -d "${SLURM_TMPDIR:-${TMPDIR:-/tmp}}/pellucid-XXXXXX") || exit 1
@@ -68,8 +68,10 @@ if [ -s "$kept" ]; then cp "$kept" "$store" || exit 1; fi  # a requeued task goe
 
 keep() {
   [ -s "$store" ] || return 0
-  rm -f "$disk/copy.db"
-  "$program" sweep merge "$disk/copy.db" "$store" 2>/dev/null && cp "$disk/copy.db" "$kept.part" && mv "$kept.part" "$kept"
+  # Names of its own: when the sweep ends, the keeper below may be at it too.
+  local copy=$disk/copy.$BASHPID.db part=$kept.$BASHPID.part
+  rm -f "$copy"
+  "$program" sweep merge "$copy" "$store" 2> "$disk/words" && cp "$copy" "$part" && mv "$part" "$kept"
 }
 
 warned=no
@@ -87,13 +89,19 @@ while kill -0 "$sweep" 2>/dev/null; do  # a signal ends `wait` early
 done
 kill "$keeper" 2>/dev/null
 wait "$keeper" 2>/dev/null
-keep && grep -q '"left": 0,' "$disk/summary.json" && : > "${kept%.db}.done"
-rm -rf -- "$disk"
+if keep; then
+  if grep -q '"left": 0,' "$disk/summary.json"; then : > "${kept%.db}.done"; fi
+  rm -rf -- "$disk"
+else
+  echo "$store cannot be copied to $kept, and stays where it is; $(tail -n 1 "$disk/words")" >&2
+  status=1
+fi
+rm -f "$kept".*.part  # of a copy that was broken off
 if [ "$warned" = yes ] && [ "$status" -ne 0 ]; then
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
 fi
 exit "$status"
-)";
+)sh";
 }
 
 /// The arrays that measure; a sweep may have points of one kind only.
