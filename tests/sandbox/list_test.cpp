@@ -157,6 +157,15 @@ TEST(Describe, SuggestsTheNearestName) {
   EXPECT_TRUE(refused(pellucid({"describe", "nothing_like_it.toml"}), 2, {"nothing_like_it.toml"}));
 }
 
+// It is moved, packed and given away: where it was built is nobody's concern.
+TEST(Program, HoldsNoPathOfItsSourceTree) {
+  const std::string program = read_file(PELLUCID_PROGRAM);
+  ASSERT_GT(program.size(), 1'000'000U);
+  EXPECT_NE(program.find("sweeps/workers/process.cpp"), std::string::npos) << "asserts name their files from the root";
+  const std::size_t at = program.find(std::string(PELLUCID_SOURCE_DIR) + "/");
+  EXPECT_EQ(at, std::string::npos) << program.substr(at == std::string::npos ? 0 : at, 200);
+}
+
 TEST(Devices, ListsOneThatRenders) {
   const Outcome listed = pellucid({"devices", "--json"}, {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
   ASSERT_TRUE(succeeded(listed));
