@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -17,6 +18,11 @@ constexpr double kSettled = 1e-6;
 /// costs a few settings more, since neighbours are told apart later.
 constexpr double kCostNoise = 0.05;
 constexpr double kErrorNoise = 0.005;
+/// A cost whose logarithm lies so far above what the others tell is some other program's.
+constexpr double kOutlier = 0.5;
+/// Measurements from which they can contradict one, and beyond which looking for it takes too long.
+constexpr std::size_t kFewest = 6;
+constexpr std::size_t kMost = 64;
 
 double normal_below(double x) {
   return std::erfc(-x / std::sqrt(2.0)) / 2;
@@ -45,7 +51,8 @@ class Search {
 
   SearchResult run() {
     const std::size_t dimensions = settings_.empty() ? 0 : settings_.front().size();
-    const std::size_t first = std::min(options_.budget, std::max<std::size_t>(3, dimensions + 1));
+    const std::size_t first =
+        std::min(options_.budget, std::max<std::size_t>({3, dimensions + 1, options_.budget / 3}));
     while (successes() < first && spent_ < options_.budget) {
       const auto next = farthest();
       if (!next) break;
@@ -70,6 +77,8 @@ class Search {
     std::sort(by_cost.begin(), by_cost.end());
     for (const auto& [cost, setting] : by_cost)
       result_.acceptable.push_back(setting);
+    for (const auto& [cost, setting] : by_cost)
+      result_.seeming_cost.push_back(std::exp(cost));
     if (!by_cost.empty()) result_.best = result_.acceptable.front();
     return result_;
   }
@@ -110,19 +119,42 @@ class Search {
 
   double error_value(double error) const { return options_.errors_positive ? std::log(std::max(error, 1e-12)) : error; }
 
-  /// A model of a value of the outcomes, over the settings that have been measured.
-  Surrogate model(const std::function<double(const Outcome&)>& value, double noise) const {
+  Surrogate error_model() const {
     std::vector<std::vector<double>> places;
     std::vector<double> values;
     for (std::size_t i = 0; i < settings_.size(); ++i) {
       if (!outcomes_[i]) continue;
       places.push_back(settings_[i]);
-      values.push_back(value(*outcomes_[i]));
+      values.push_back(error_value(outcomes_[i]->error));
     }
-    return {std::move(places), std::move(values), noise};
+    return {std::move(places), std::move(values), kErrorNoise};
   }
+  /// The model of the logarithm of cost, without costs that the others contradict.
   Surrogate cost_model() const {
-    return model([](const Outcome& o) { return std::log(std::max(o.cost, 1e-12)); }, kCostNoise);
+    std::vector<std::vector<double>> places;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < settings_.size(); ++i) {
+      if (!outcomes_[i]) continue;
+      places.push_back(settings_[i]);
+      values.push_back(
+          std::log(std::max(outcomes_[i]->least_cost > 0 ? outcomes_[i]->least_cost : outcomes_[i]->cost, 1e-12)));
+    }
+    if (places.size() >= kFewest && places.size() <= kMost) {
+      std::vector<std::size_t> contradicted;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        std::vector<std::vector<double>> other_places = places;
+        std::vector<double> other_values = values;
+        other_places.erase(other_places.begin() + static_cast<std::ptrdiff_t>(i));
+        other_values.erase(other_values.begin() + static_cast<std::ptrdiff_t>(i));
+        const Prediction told = Surrogate(std::move(other_places), std::move(other_values), kCostNoise).at(places[i]);
+        if (values[i] - told.mean > std::max(kOutlier, 2 * told.deviation)) contradicted.push_back(i);
+      }
+      for (auto i = contradicted.rbegin(); i != contradicted.rend(); ++i) {
+        places.erase(places.begin() + static_cast<std::ptrdiff_t>(*i));
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(*i));
+      }
+    }
+    return {std::move(places), std::move(values), kCostNoise};
   }
 
   /// The least cost that an acceptable setting seems to have, in its logarithm: not the luckiest measurement.
@@ -137,7 +169,7 @@ class Search {
 
   std::optional<std::size_t> most_promising() const {
     const Surrogate cost = cost_model();
-    const Surrogate error = model([this](const Outcome& o) { return error_value(o.error); }, kErrorNoise);
+    const Surrogate error = error_model();
     const std::optional<double> so_far = least_cost(cost);
     const double limit = so_far.value_or(0);
     std::optional<std::size_t> found;

@@ -112,6 +112,8 @@ std::optional<Outcome> outcome_of(const json& row, const TuneOptions& options) {
   if (options.cost == "frame_ms_median") {
     outcome.cost_low = row.value("frame_ms_ci95_low", outcome.cost);
     outcome.cost_high = row.value("frame_ms_ci95_high", outcome.cost);
+    if (const auto samples = row.find("frame_ms_samples"); samples != row.end() && !samples->empty())
+      outcome.least_cost = std::min_element(samples->begin(), samples->end())->get<double>();
   }
   // Equal images have an infinite psnr, which a row cannot hold.
   const auto quantity = row.find(options.quantity);
@@ -166,12 +168,10 @@ namespace {
 constexpr double kFinalFactor = 1.5;
 
 /// The settings to compare in turns, by their places in the group.
-std::vector<std::size_t> choose_finalists(const SearchResult& found, const std::vector<std::optional<Outcome>>& known,
-                                          std::size_t most) {
+std::vector<std::size_t> choose_finalists(const SearchResult& found, std::size_t most) {
   std::vector<std::size_t> chosen;
-  for (const std::size_t i : found.acceptable) {
-    const bool near = known[i]->cost <= kFinalFactor * known[found.acceptable.front()]->cost;
-    if (near && chosen.size() < most) chosen.push_back(i);
+  for (std::size_t i = 0; i < found.acceptable.size() && chosen.size() < most; ++i) {
+    if (found.seeming_cost[i] <= kFinalFactor * found.seeming_cost.front()) chosen.push_back(found.acceptable[i]);
   }
   return chosen;
 }
@@ -195,22 +195,32 @@ std::vector<TuneAnswer> tune(const Plan& plan, const TuneOptions& options, const
     // Times alone are compared in turns; a finalist's frames are about as many as those of a point.
     const std::size_t for_finals = options.cost == "frame_ms_median" ? std::max(kFinalsAtLeast, renders / 4) : 0;
     search.budget = renders - for_finals;
-    const std::vector<std::optional<Outcome>> before = known;
-    const SearchResult found =
-        search_cheapest(coordinates(plan, group), search, before, [&](std::size_t i) -> std::optional<Outcome> {
-          hooks.measure(group.points[i]);
-          const json* row = hooks.row_of(group.points[i]);
-          known[i] = row != nullptr ? outcome_of(*row, options) : std::nullopt;
-          return known[i];
-        });
+    const auto look = [&] {
+      const std::vector<std::optional<Outcome>> before = known;
+      SearchResult found =
+          search_cheapest(coordinates(plan, group), search, before, [&](std::size_t i) -> std::optional<Outcome> {
+            hooks.measure(group.points[i]);
+            const json* row = hooks.row_of(group.points[i]);
+            known[i] = row != nullptr ? outcome_of(*row, options) : std::nullopt;
+            return known[i];
+          });
+      for (const std::size_t i : found.measured)
+        answer.measured.push_back(group.points[i]);
+      return found;
+    };
+    SearchResult found = look();
+    // Renders that the finals do not need go on looking.
+    if (const std::size_t needed = std::max(kFinalsAtLeast, choose_finalists(found, for_finals).size());
+        needed < for_finals && !found.settled) {
+      search.budget = for_finals - needed;
+      found = look();
+    }
     answer.settled = found.settled;
-    for (const std::size_t i : found.measured)
-      answer.measured.push_back(group.points[i]);
     for (const std::size_t i : front(known))
       answer.front.push_back(group.points[i]);
     if (found.best) answer.best = group.points[*found.best];
     std::vector<std::size_t> finalists;
-    for (const std::size_t i : choose_finalists(found, known, for_finals))
+    for (const std::size_t i : choose_finalists(found, std::min(for_finals, renders - answer.measured.size())))
       finalists.push_back(group.points[i]);
     if (finalists.size() > 1) answer.finalists = rank_finalists(finalists, hooks.time_in_turns(finalists, kTuneRounds));
     if (!answer.finalists.empty()) {

@@ -269,7 +269,7 @@ int tune_command(TuneArguments arguments) {
     rows.clear();
     std::error_code error;
     if (!std::filesystem::exists(arguments.store, error)) return;
-    for (json& row : Store(arguments.store, Access::read).rows(false, true)) {
+    for (json& row : Store(arguments.store, Access::read).rows(true, true)) {
       if (!device.empty() && row.value("device", "") + ", " + row.value("driver", "") != device) continue;
       std::string id = row.at("point").get<std::string>();  // before the row is moved
       rows[std::move(id)] = std::move(row);
