@@ -25,7 +25,7 @@ namespace pellucid::sandbox {
 namespace {
 
 constexpr double kSaid_s = 6;
-constexpr double kHeldBack_s = 0.04;
+constexpr double kHeldBack_s = 0.08;
 constexpr int kStatusHeight = 22;
 
 std::string title(const ViewState& state) {
