@@ -34,6 +34,7 @@ struct Session {
   std::string error;
 
   int width = 0, height = 0, channels = 0, depth = 0;
+  std::size_t stored_row_bytes = 0;  ///< before anything is expanded
   std::vector<png_byte> bytes;
   std::vector<png_bytep> rows;
   std::vector<png_text> texts;
@@ -73,9 +74,12 @@ void read_header(Session& s) {
   png_init_io(s.png, s.file);
   png_set_crc_action(s.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_set_user_limits(s.png, 0x7fffffff, 0x7fffffff);  // our own limit is checked, and worded, by the caller
+  // A chunk's length is memory before it is found to be longer than the file.
+  png_set_chunk_malloc_max(s.png, png_alloc_size_t{1} << 26);
   png_read_info(s.png, s.info);
   s.width = static_cast<int>(png_get_image_width(s.png, s.info));
   s.height = static_cast<int>(png_get_image_height(s.png, s.info));
+  s.stored_row_bytes = png_get_rowbytes(s.png, s.info);
 }
 
 /// Asks for gray, RGB or RGBA of 8 or 16 bits in the machine's byte order.
@@ -188,8 +192,9 @@ PictureFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes
   require(guarded(s, choose_layout));
   const std::size_t row_bytes = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.channels * s.depth / 8);
   const std::size_t total = row_bytes * static_cast<std::size_t>(s.height);
-  // Deflate shrinks at most 1032-fold, and a packed PNG of 1 bit a pixel grows 32-fold when expanded.
-  if (total / (1032U * 32U) > file_bytes) throw malformed_image(path, "the PNG file is truncated");
+  // Deflate shrinks at most 1032-fold.
+  if (s.stored_row_bytes * static_cast<std::size_t>(s.height) / 1032U > file_bytes)
+    throw malformed_image(path, "the PNG file is truncated");
   s.bytes.resize(total);
   set_rows(s, row_bytes);
   require(guarded(s, read_rows));
