@@ -63,7 +63,7 @@ std::optional<ReliefTracer::Object> ReliefSurfaces::object_on(const glm::dvec3& 
   const auto lit = [&](std::size_t index, const Incidence& in) {
     if (!light_->casts_shadow(index)) return true;
     ++rays;
-    return !objects_->occluded(start, in.to_light, 0.0, in.distance * (1.0 - 1e-6));
+    return !geometry_->occluded(start, in.to_light, 0.0, in.distance * (1.0 - 1e-6));
   };
   return ReliefTracer::Object{
       hit.distance, light_->surface_radiance(point.position, point.normal, point.albedo, point.emission, lit)};
@@ -95,7 +95,11 @@ std::optional<ReliefSurfaces::Seen> ReliefSurfaces::seen(const Hit& hit, const S
     ++rays;
     const glm::dvec3 size = glm::abs(from);
     const double clearance = 1e-5 * (point.distance + std::max({size.x, size.y, size.z}));
-    return !geometry_->occluded(from + clearance * place.frame.normal, to_light, 0.0, distance_m * (1.0 - 1e-6));
+    // The tangent plane of an interpolated normal dips under its own triangle.
+    const double above =
+        glm::dot(from - point.position, point.face) * (glm::dot(point.face, point.normal) < 0 ? -1 : 1);
+    const glm::dvec3 start = from + (clearance + std::max(-above, 0.0)) * place.frame.normal;
+    return !geometry_->occluded(start, to_light, 0.0, distance_m * (1.0 - 1e-6));
   };
   const auto objects = [&](const glm::dvec3& from, const glm::dvec3& along, double end_m) {
     return object_on(from, along, end_m, rays);
