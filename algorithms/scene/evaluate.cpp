@@ -16,10 +16,6 @@ namespace pellucid {
 
 namespace {
 
-int whole(double value) {
-  return static_cast<int>(std::lround(value));
-}
-
 [[noreturn]] void contradict(const SceneDescription& scene, FilePosition place, std::string_view message) {
   throw scene.file.error(place, message);
 }

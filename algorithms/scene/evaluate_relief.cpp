@@ -16,10 +16,6 @@
 namespace pellucid {
 namespace {
 
-int whole(double value) {
-  return static_cast<int>(std::lround(value));
-}
-
 PatternOptions options_of(const ReliefLayerDescription& from, double time_s) {
   const auto f = [](double v) { return static_cast<float>(v); };
   PatternOptions options;

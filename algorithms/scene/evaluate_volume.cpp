@@ -15,10 +15,6 @@ namespace pellucid {
 
 namespace {
 
-int whole(double value) {
-  return static_cast<int>(std::lround(value));
-}
-
 // ---- the box of a light's space ----
 
 /// Beyond it the box is so wide that few of its voxels lie in the cone.

@@ -14,7 +14,7 @@ namespace pellucid {
 namespace {
 
 constexpr int kMostEvents = 100'000;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // How light of three channels fared over distances that are drawn for one of them: the media transmit `left` of it, and
 // the distances are as likely as `likelihood`, times one factor. No weight grows beyond 3.
@@ -45,15 +45,15 @@ glm::dvec3 ReliefTracer::walk(const ReliefPlace& place, glm::dvec3 p, glm::dvec3
   bool scattered = false, bounced = false;
   for (int event = 0; event < kMostEvents; ++event) {
     const ReliefRay ray = place.ray(p, direction);
-    const double floor = meet(solid_, ray, 0.0, 1.0).value_or(kInfinity);
-    const double leaves = meet(*medium_, ray, 0.0, -1.0).value_or(kInfinity);
+    const double floor = meet(solid_, ray, 0.0, 1.0).value_or(kUnbounded);
+    const double leaves = meet(*medium_, ray, 0.0, -1.0).value_or(kUnbounded);
     double end = std::min(floor, leaves);
-    if (end == kInfinity) end = end_of(ray, 0.0);
+    if (end == kUnbounded) end = end_of(ray, 0.0);
     const auto object =
         objects ? objects(place.position + place.to_world(p), place.to_world(direction), end) : std::optional<Object>();
     if (object) end = object->distance_m;
 
-    const double s = extinction[drawn] > 0 ? -std::log(1 - uniform()) / extinction[drawn] : kInfinity;
+    const double s = extinction[drawn] > 0 ? -std::log(1 - uniform()) / extinction[drawn] : kUnbounded;
     if (s < end) {
       const glm::dvec3 t = glm::exp(-extinction * s);
       spectrum.go(scatters * t, extinction * t, drawn);
@@ -75,11 +75,11 @@ glm::dvec3 ReliefTracer::walk(const ReliefPlace& place, glm::dvec3 p, glm::dvec3
       const glm::dvec3 seen = weight * spectrum.weight();
       if (object) return sum + (bounced ? glm::dvec3(0.0) : seen * object->radiance);
       if (!scattered && !bounced && leaves <= floor) {  // as where nothing scatters: straight on
-        return sum + seen * (floor < kInfinity ? solid_radiance(place, ray.at(floor), direction, visible)
-                                               : environment(place, direction));
+        return sum + seen * (floor < kUnbounded ? solid_radiance(place, ray.at(floor), direction, visible)
+                                                : environment(place, direction));
       }
       p = ray.at(end);
-      if (floor <= leaves && floor < kInfinity) {
+      if (floor <= leaves && floor < kUnbounded) {
         if (bounced) return sum;
         sum += seen * solid_radiance(place, p, direction, visible);
         const glm::dvec2 uv = ray.uv_at(end);
@@ -90,7 +90,7 @@ glm::dvec3 ReliefTracer::walk(const ReliefPlace& place, glm::dvec3 p, glm::dvec3
       } else {
         // The ambient light is all that shines in from outside; on what it adds to the solid, solid_radiance() has it.
         const glm::dvec3 outside = bounced ? glm::dvec3(0.0) : seen * light_->ambient();
-        if (leaves == kInfinity) return sum + outside;
+        if (leaves == kUnbounded) return sum + outside;
         const glm::dvec3 n = medium_->normal(ray.uv_at(end), ray.uv_per_metre);
         const double cosine = glm::dot(direction, n);
         if (uniform() >= fresnel_dielectric(std::abs(cosine), eta)) return sum + outside;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <filesystem>
@@ -21,6 +22,11 @@
 /// The content of a scene file, before it is evaluated at a time and at values of the scene's parameters. Numbers are
 /// doubles, integers too, and keep their addresses: parameters write them (DriveTarget).
 namespace pellucid {
+
+/// A number of a description that is a count.
+inline int whole(double value) {
+  return static_cast<int>(std::lround(value));
+}
 
 /// Position, turn and motion of an instance or of the volume's box.
 struct Placement {
