@@ -133,10 +133,10 @@ Sheet sheet_of(const std::vector<Crossing>& crossings, const CubeGrid& grid) {
 }
 
 /// Works out the cones of one cube.
-class Cones {
+class ConeSearches {
  public:
-  Cones(const Solid& solid, const glm::dvec3& center, const CubeOptions& options, const Radial& radial,
-        const SheetTree& directions)
+  ConeSearches(const Solid& solid, const glm::dvec3& center, const CubeOptions& options, const Radial& radial,
+               const SheetTree& directions)
       : solid_(solid),
         center_(center),
         options_(options),
@@ -300,7 +300,7 @@ CubeSet build_cubes(const Solid& solid, std::span<const glm::dvec3> centers, con
     if (options.use_d) cube.sphere = static_cast<float>(solid.tree().nearest(center).distance);
     const Radial radial = trace_all(solid, center, grid, options.layers);
     cube.dropped_share = static_cast<double>(radial.dropped) / static_cast<double>(grid.texels());
-    Cones(solid, center, options, radial, directions)
+    ConeSearches(solid, center, options, radial, directions)
         .fill(cube, fmt::format("cones of cube {} of {}", result.cubes.size() + 1, centers.size()));
     result.cubes.push_back(std::move(cube));
   }

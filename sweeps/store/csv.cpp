@@ -15,43 +15,44 @@ namespace pellucid::sweeps {
 namespace {
 
 using nlohmann::json;
-using Names = std::vector<std::string>;
+using ColumnNames = std::vector<std::string>;
 
-const Names kIdentity{"sweep", "block", "point", "technique", "scene", "view", "width", "height", "status", "failure"};
-const Names kTimes{"frame_ms_median",
-                   "frame_ms_ci95_low",
-                   "frame_ms_ci95_high",
-                   "frame_ms_mean",
-                   "frame_ms_q25",
-                   "frame_ms_q75",
-                   "fps",
-                   "frames",
-                   "warmup_frames",
-                   "timing",
-                   "clock",
-                   "baseline_drift",
-                   "prepare_s"};
-const Names kReference{"reference_method",
-                       "reference_step_error_max",
-                       "reference_step_error_mean",
-                       "reference_unconverged_share",
-                       "shadow_pixels_share",
-                       "reference_to_exact_flip_mean",
-                       "reference_to_exact_rmse",
-                       "reference_samples",
-                       "reference_standard_error_max",
-                       "reference_standard_error_mean",
-                       "reference_caustic_error_max",
-                       "reference_caustic_error_mean",
-                       "reference_cut_weight_max",
-                       "reference_cut_weight_mean",
-                       "reference_lost_weight_mean",
-                       "reference_trace_s"};
+const ColumnNames kIdentity{"sweep", "block", "point",  "technique", "scene",
+                            "view",  "width", "height", "status",    "failure"};
+const ColumnNames kTimes{"frame_ms_median",
+                         "frame_ms_ci95_low",
+                         "frame_ms_ci95_high",
+                         "frame_ms_mean",
+                         "frame_ms_q25",
+                         "frame_ms_q75",
+                         "fps",
+                         "frames",
+                         "warmup_frames",
+                         "timing",
+                         "clock",
+                         "baseline_drift",
+                         "prepare_s"};
+const ColumnNames kReference{"reference_method",
+                             "reference_step_error_max",
+                             "reference_step_error_mean",
+                             "reference_unconverged_share",
+                             "shadow_pixels_share",
+                             "reference_to_exact_flip_mean",
+                             "reference_to_exact_rmse",
+                             "reference_samples",
+                             "reference_standard_error_max",
+                             "reference_standard_error_mean",
+                             "reference_caustic_error_max",
+                             "reference_caustic_error_mean",
+                             "reference_cut_weight_max",
+                             "reference_cut_weight_mean",
+                             "reference_lost_weight_mean",
+                             "reference_trace_s"};
 constexpr std::string_view kShadow = "_shadow";
-const Names kProvenance{"gpu_bytes",   "peak_rss_bytes",  "device",      "driver",    "host",
-                        "commit",      "dirty",           "scene_hash",  "code_hash", "shader_hash",
-                        "started_utc", "timed_unix_s",    "done_unix_s", "wall_s",    "argv",
-                        "repeat",      "frame_ms_samples"};
+const ColumnNames kProvenance{"gpu_bytes",   "peak_rss_bytes",  "device",      "driver",    "host",
+                              "commit",      "dirty",           "scene_hash",  "code_hash", "shader_hash",
+                              "started_utc", "timed_unix_s",    "done_unix_s", "wall_s",    "argv",
+                              "repeat",      "frame_ms_samples"};
 constexpr std::string_view kPasses = "pass_ms.";
 
 std::string field(const json& row, const std::string& name) {
@@ -62,28 +63,28 @@ std::string field(const json& row, const std::string& name) {
 }
 
 /// The columns of `rows`, which are opened.
-Names columns(const std::vector<json>& rows) {
+ColumnNames columns(const std::vector<json>& rows) {
   std::set<std::string> present;
   for (const json& row : rows) {
     for (const auto& [name, value] : row.items())
       present.insert(name);
   }
-  Names result = kIdentity;
+  ColumnNames result = kIdentity;
   for (const std::string& name : kIdentity)
     present.erase(name);
-  Names measured;
-  const auto take = [&](const Names& names) {
+  ColumnNames measured;
+  const auto take = [&](const ColumnNames& names) {
     for (const std::string& name : names) {
       if (present.erase(name) > 0) measured.push_back(name);
     }
   };
   take(kTimes);
-  Names passes;
+  ColumnNames passes;
   std::copy_if(present.begin(), present.end(), std::back_inserter(passes),
                [](const std::string& name) { return name.starts_with(kPasses); });
   take(passes);
   take(MetricSet().columns(true));
-  Names in_shadow;
+  ColumnNames in_shadow;
   for (const std::string& name : MetricSet().columns(false))
     in_shadow.push_back(fmt::format("{}{}", name, kShadow));
   take(in_shadow);
@@ -96,7 +97,7 @@ Names columns(const std::vector<json>& rows) {
 
 }  // namespace
 
-std::string csv_record(const Names& fields) {
+std::string csv_record(const ColumnNames& fields) {
   std::string out;
   for (const std::string& text : fields) {
     if (&text != &fields.front()) out += ',';
@@ -116,9 +117,9 @@ std::string csv_record(const Names& fields) {
 
 namespace {
 
-std::string table(const std::vector<json>& flat, const Names& names) {
+std::string table(const std::vector<json>& flat, const ColumnNames& names) {
   std::string out = csv_record(names);
-  Names fields(names.size());
+  ColumnNames fields(names.size());
   for (const json& row : flat) {
     std::transform(names.begin(), names.end(), fields.begin(), [&](const std::string& n) { return field(row, n); });
     out += csv_record(fields);
@@ -141,7 +142,7 @@ std::string rows_to_csv(const std::vector<json>& rows) {
   return table(flat, columns(flat));
 }
 
-std::string rows_to_csv(const std::vector<json>& rows, const Names& names) {
+std::string rows_to_csv(const std::vector<json>& rows, const ColumnNames& names) {
   return table(all_opened(rows), names);
 }
 

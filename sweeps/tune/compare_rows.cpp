@@ -11,6 +11,7 @@
 #include "algorithms/technique.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/quantities/quantities.hpp"
+#include "sweeps/store/rows.hpp"
 #include "sweeps/tune/median_interval.hpp"
 
 namespace pellucid::sweeps {
@@ -26,16 +27,6 @@ constexpr std::size_t kManyBaselines = 3;
 constexpr double kRounding = 1e-9;
 
 using Rows = std::map<std::string, const json*>;
-
-std::string machine(const json& row) {
-  return fmt::format("{}, {}", row.value("device", ""), row.value("driver", ""));
-}
-
-std::string field_text(const json& row, const std::string& field) {
-  const auto found = row.find(field);
-  if (found == row.end() || found->is_null()) return "";
-  return found->is_string() ? found->get<std::string>() : found->dump();
-}
 
 /// The conditions of a measurement, as against its outcome.
 std::string identity(const json& row, const std::vector<std::string>& parameters) {

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double squared(const glm::dvec3& v) {
-  return glm::dot(v, v);
-}
-
 // The plane through the apex that touches the cone's wall on the side of w, by its normal away from the cone.
 glm::dvec3 wall_normal(const Cone& cone, const glm::dvec3& w) {
   const glm::dvec3 across = w - glm::dot(w, cone.axis) * cone.axis;

@@ -7,6 +7,10 @@
 
 namespace pellucid::geocube {
 
+inline double squared(const glm::dvec3& v) {
+  return glm::dot(v, v);
+}
+
 /// A circular cone without a base: the points whose direction from `apex` is within the half-angle of `axis`.
 struct Cone {
   glm::dvec3 apex{0.0};

@@ -18,12 +18,8 @@
 namespace pellucid::geocube {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr float kFarAway = std::numeric_limits<float>::infinity();
-
-double squared(const glm::dvec3& v) {
-  return glm::dot(v, v);
-}
 
 // Six times the signed volume of a tetrahedron.
 double orient(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
@@ -132,7 +128,7 @@ TriangleTree::TriangleTree(std::vector<glm::dvec3> positions, std::vector<glm::u
 // A node of these triangles, which it sorts into four parts of nearly the same number.
 std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vector<glm::dvec3>& centroids) {
   const auto halves = [&](std::span<std::uint32_t> part) {
-    glm::dvec3 low(kInfinity), high(-kInfinity);
+    glm::dvec3 low(kUnbounded), high(-kUnbounded);
     for (const std::uint32_t triangle : part) {
       low = glm::min(low, centroids[triangle]);
       high = glm::max(high, centroids[triangle]);
@@ -159,7 +155,7 @@ std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vec
 }
 
 void TriangleTree::enclose(Node& node, std::size_t lane, std::span<const std::uint32_t> triangles) const {
-  glm::dvec3 low(kInfinity), high(-kInfinity), normal(0.0);
+  glm::dvec3 low(kUnbounded), high(-kUnbounded), normal(0.0);
   for (const std::uint32_t triangle : triangles) {
     const auto t = corners(triangle);
     for (const glm::dvec3& p : t) {
@@ -178,7 +174,7 @@ void TriangleTree::enclose(Node& node, std::size_t lane, std::span<const std::ui
     node.thickness[lane] = kFarAway;
     return;
   }
-  double least = kInfinity, most = -kInfinity;
+  double least = kUnbounded, most = -kUnbounded;
   for (const std::uint32_t triangle : triangles) {
     for (const glm::dvec3& p : corners(triangle)) {
       const double height = glm::dot(normal, p - centre) / length;
@@ -255,7 +251,7 @@ Nearest TriangleTree::nearest_in_cone(const Cone& cone, std::uint32_t own, std::
   nearest_first(
       best, [&](const Node& node) { return coarse.distance(Seen(node, coarse.apex)); },
       [&](std::uint32_t triangle, double below) {
-        return triangle == own ? kInfinity : distance_in_cone(cone, corners(triangle), below);
+        return triangle == own ? kUnbounded : distance_in_cone(cone, corners(triangle), below);
       });
   return best;
 }
