@@ -4,8 +4,7 @@
 #include <exception>
 #include <system_error>
 
-#include <fmt/format.h>
-
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/image.hpp"
 #include "gl/display/display.hpp"
 #include "gl/error.hpp"
@@ -63,7 +62,7 @@ std::vector<KeptPicture> kept_pictures(const sweeps::Plan& plan, const fs::path&
       }
       result.push_back({sweeps::summary_of(point), sweeps::repeat_command(point), picture, thumbnail});
     } catch (const std::exception& e) {
-      fmt::print(stderr, "warning: no thumbnail of '{}': {}\n", picture.string(), e.what());
+      tell("warning: no thumbnail of '{}': {}", picture.string(), e.what());
     }
   }
   return result;
