@@ -11,7 +11,7 @@
 #include "gl/error.hpp"
 #include "plots/charts/style.hpp"
 #include "plots/figures/figure_reader.hpp"
-#include "sweeps/store/csv.hpp"
+#include "sweeps/tables/csv.hpp"
 
 namespace pellucid::plots {
 namespace {

@@ -102,6 +102,7 @@ std::vector<Quantity> read_quantities(TableReader& root, bool own) {
     reader.boolean("text", quantity.text);
     reader.boolean("time", quantity.time);
     reader.boolean("from_zero", quantity.from_zero);
+    if (!own) reader.boolean("identity", quantity.identity);
     if (const auto bounds = reader.texts("bounds"); !bounds.empty()) {
       if (bounds.size() != 2) reader.fail("bounds", "two quantities, the lower first");
       quantity.low = bounds[0].first;

@@ -33,6 +33,7 @@ struct Quantity {
   bool text = false;      ///< words, not a number
   bool time = false;      ///< measured by timing frames: it may be unconverged, and an untimed row lacks it
   bool from_zero = true;  ///< an axis starts at 0
+  bool identity = false;  ///< it tells which point a row is of: every CSV file has it, before the parameters
   std::string low, high;  ///< the quantities that bound it; empty without an interval
   std::string interval;   ///< what they are: "95 % interval of the median"
   std::string module;     ///< folder of the technique that declares it; empty for what all rows may have

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
-#include "sweeps/store/csv.hpp"
+#include "sweeps/tables/csv.hpp"
 #include "sweeps/tables/tables.hpp"
 
 namespace pellucid::sweeps {

@@ -1,5 +1,4 @@
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,10 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/spec/point_json.hpp"
+#include "sweeps/workers/one_worker.hpp"
 #include "sweeps/workers/point_row.hpp"
-#include "sweeps/workers/progress.hpp"
 #include "sweeps/workers/run.hpp"
-#include "sweeps/workers/stop_signals.hpp"
 #include "sweeps/workers/worker_client.hpp"
 
 namespace pellucid::sweeps {
@@ -19,29 +17,18 @@ std::vector<std::vector<double>> time_in_turns(const Spec& spec, const std::vect
                                                int frames, const RunOptions& options) {
   std::vector<std::vector<double>> times(points.size());
   std::vector<bool> broken(points.size(), false);
-  const StopSignals signals;
-  SweepProgress progress(static_cast<std::size_t>(rounds), 0, 0, 1, options.quiet);
-  const std::optional<int> device = options.devices.empty() ? std::nullopt : std::optional(options.devices.front());
-  WorkerClient client(options.worker, device, spec.timeout_s);
-  const WorkerClient::Hooks hooks{[&](const std::string& phase, double share) { progress.phase(phase, share); },
-                                  [&] {
-                                    progress.tick();
-                                    return !signals.caught();
-                                  },
-                                  [&](const std::string& line) { progress.note(line); }};
+  OneWorker worker(spec, static_cast<std::size_t>(rounds), options);
   for (int round = 0; round < rounds; ++round) {
     const std::string what = fmt::format("{} finalists in turns", points.size());
-    progress.begin(what);
+    worker.progress().begin(what);
     double total_ms = 0;
     for (std::size_t turn = 0; turn < points.size(); ++turn) {
       // Back and forth, so that none always follows the same one.
       const std::size_t i = round % 2 == 0 ? turn : points.size() - 1 - turn;
       if (broken[i]) continue;
-      if (!client.running() && !client.start(hooks)) return std::vector<std::vector<double>>(points.size());
       Point point = *points[i];
       point.timing.min_samples = point.timing.max_samples = frames;
-      const WorkerClient::Answer answer =
-          client.ask({{"type", "time"}, {"point", point_to_json(point)}}, point.id, hooks);
+      const WorkerClient::Answer answer = worker.ask({{"type", "time"}, {"point", point_to_json(point)}}, point.id);
       if (answer.outcome == WorkerClient::Outcome::stopped) return std::vector<std::vector<double>>(points.size());
       const std::string wrong =
           answer.outcome == WorkerClient::Outcome::failed ? answer.reason : flaw_of(answer.row, point);
@@ -52,11 +39,11 @@ std::vector<std::vector<double>> time_in_turns(const Spec& spec, const std::vect
       }
       broken[i] = true;
       times[i].clear();
-      progress.note(fmt::format("failed: {}: {}", summary_of(point), wrong));
+      worker.progress().note(fmt::format("failed: {}: {}", summary_of(point), wrong));
     }
-    progress.finish(what, "done", total_ms / 1000);
+    worker.progress().finish(what, "done", total_ms / 1000);
   }
-  client.close();
+  worker.close();
   return times;
 }
 

@@ -1,6 +1,5 @@
 #include <chrono>
 #include <filesystem>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -9,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/spec/point_json.hpp"
-#include "sweeps/workers/progress.hpp"
+#include "sweeps/workers/one_worker.hpp"
 #include "sweeps/workers/run.hpp"
-#include "sweeps/workers/stop_signals.hpp"
 #include "sweeps/workers/worker_client.hpp"
 #include "sweeps/workers/worker_protocol.hpp"
 
@@ -40,39 +38,30 @@ ReferencesSummary trace_references(const Spec& spec, const Plan& plan, const std
   }
   ReferencesSummary summary;
   summary.planned = points.size();
-  const StopSignals signals;
-  SweepProgress progress(points.size(), 0, 0, 1, options.quiet);
-  const std::optional<int> device = options.devices.empty() ? std::nullopt : std::optional(options.devices.front());
-  WorkerClient client(options.worker, device, spec.timeout_s);
-  const WorkerClient::Hooks hooks{[&](const std::string& phase, double share) { progress.phase(phase, share); },
-                                  [&] {
-                                    progress.tick();
-                                    return !signals.caught();
-                                  },
-                                  [&](const std::string& line) { progress.note(line); }};
+  OneWorker worker(spec, points.size(), options);
+  const StopSignals& signals = worker.signals();
   for (const Point* point : points) {
     if (signals.caught() || signals.warned()) break;
     const std::string what =
         fmt::format("reference of {} {} {}x{}", point->scene, point->view, point->size.width, point->size.height);
-    progress.begin(what);
-    if (!client.running() && !client.start(hooks)) break;
+    worker.progress().begin(what);
     const auto start = std::chrono::steady_clock::now();
-    const WorkerClient::Answer answer = client.ask(
-        {{"type", "reference"}, {"point", point_to_json(*point)}, {"references", folder.string()}}, point->id, hooks);
+    const WorkerClient::Answer answer = worker.ask(
+        {{"type", "reference"}, {"point", point_to_json(*point)}, {"references", folder.string()}}, point->id);
     if (answer.outcome == WorkerClient::Outcome::stopped) break;
     const bool failed = answer.outcome == WorkerClient::Outcome::failed;
     if (failed) {
       summary.failures.push_back(answer.reason);
-      progress.note(fmt::format("failed: {}", answer.reason));
+      worker.progress().note(fmt::format("failed: {}", answer.reason));
     } else {
       ++summary.done;
     }
-    progress.finish(what, failed ? "failed" : "done",
-                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    worker.progress().finish(what, failed ? "failed" : "done",
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   summary.interrupted =
       signals.caught() || (signals.warned() && summary.done + summary.failures.size() < points.size());
-  if (!signals.caught()) client.close();
+  worker.close();
   return summary;
 }
 

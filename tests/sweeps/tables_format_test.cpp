@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "sweeps/store/csv.hpp"
+#include "sweeps/tables/csv.hpp"
 #include "sweeps/tables/tables.hpp"
 #include "tests/sweeps/fake_known_names.hpp"
 

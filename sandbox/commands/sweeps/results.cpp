@@ -19,9 +19,9 @@
 #include "sandbox/arguments.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sweeps/papers/paper.hpp"
-#include "sweeps/store/csv.hpp"
 #include "sweeps/store/select.hpp"
 #include "sweeps/store/store.hpp"
+#include "sweeps/tables/csv.hpp"
 #include "sweeps/tables/tables.hpp"
 
 namespace pellucid::sandbox {
