@@ -195,11 +195,13 @@ void check_radiance(PictureFile& file, double most, std::vector<std::string>& wa
 /// Alpha is of no use, and may hold anything.
 Image without_alpha(Image image) {
   if (image.channels != 4) return image;
-  Image out(image.width, image.height, 3);
-  for (std::size_t i = 0; i < out.pixels.size() / 3; ++i)
-    std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(4 * i), 3,
-                out.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  return out;
+  const std::size_t count = image.pixels.size() / 4;
+  for (std::size_t i = 1; i < count; ++i)  // in place: a large picture has no room for a second one
+    for (std::size_t c = 0; c < 3; ++c)
+      image.pixels[3 * i + c] = image.pixels[4 * i + c];
+  image.pixels.resize(3 * count);
+  image.channels = 3;
+  return image;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "algorithms/scene/images/image.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -53,6 +54,23 @@ InputError malformed_image(const std::filesystem::path& path, std::string_view r
   return InputError(fmt::format("cannot read image '{}': {}", path.string(), reason));
 }
 
+PixelMemory::PixelMemory(const std::filesystem::path& path, std::uint64_t file_bytes)
+    : path_(path), file_bytes_(file_bytes) {
+  constexpr std::uint64_t kAlways = std::uint64_t{384} << 20;  // 8K UHD in RGB, all of it black
+  most_ = std::min(std::max(kAlways, 4128 * file_bytes), 4 * sizeof(float) * std::uint64_t{kMaxImagePixels});
+}
+
+void PixelMemory::take(int width, int height, std::size_t channels) {
+  taken_ += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * channels * sizeof(float);
+  if (taken_ <= most_) return;
+  constexpr std::uint64_t kMebi = 1 << 20;
+  throw malformed_image(
+      path_,
+      fmt::format("{} channels of {}x{} pixels are too much to read: {} MiB with what was read before; a file of {} "
+                  "bytes may take {} MiB",
+                  channels, width, height, taken_ / kMebi, file_bytes_, most_ / kMebi));
+}
+
 PictureFile read_picture(const std::filesystem::path& path, const LayerFilter& wanted) {
   const std::string shown = path.string();
   std::error_code error;
@@ -70,11 +88,9 @@ PictureFile read_picture(const std::filesystem::path& path, const LayerFilter& w
   const std::string_view start(head.data(), static_cast<std::size_t>(file.gcount()));
   file.close();
   if (start.empty()) throw InputError(fmt::format("cannot read image '{}': the file is empty", shown));
-  if (start.starts_with(kExrMagic)) return read_exr(path, wanted);
-  if (start == kPngMagic) {
-    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-    return read_png(path, error ? 0 : bytes);
-  }
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (start.starts_with(kExrMagic)) return read_exr(path, error ? 0 : bytes, wanted);
+  if (start == kPngMagic) return read_png(path, error ? 0 : bytes);
   throw InputError(fmt::format("cannot read image '{}': neither OpenEXR nor PNG", shown));
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -17,6 +18,7 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
+#include <glm/glm.hpp>
 
 #include "algorithms/scene/images/chromaticities.hpp"
 #include "algorithms/scene/images/exr_slices.hpp"
@@ -170,51 +172,60 @@ void convert_colors(const std::filesystem::path& path, const Imf::Header& header
 
 // ---- pixels ----
 
-/// The stored pixels laid into the display window, 0 around them.
-Image placed(Image stored, const Imath::Box2i& data, const Imath::Box2i& display) {
-  if (data == display) return stored;
-  const auto width = static_cast<long long>(display.max.x) - display.min.x + 1;
-  const auto height = static_cast<long long>(display.max.y) - display.min.y + 1;
-  Image out(static_cast<int>(width), static_cast<int>(height), stored.channels);
-  const int left = std::max(data.min.x, display.min.x), right = std::min(data.max.x, display.max.x);
-  for (int y = std::max(data.min.y, display.min.y); y <= std::min(data.max.y, display.max.y) && left <= right; ++y) {
-    const float* from = stored.at(left - data.min.x, y - data.min.y);
-    const auto count = static_cast<std::size_t>(right - left + 1) * static_cast<std::size_t>(stored.channels);
-    std::copy_n(from, count, out.at(left - display.min.x, y - display.min.y));
-  }
-  return out;
+glm::ivec2 size_of(const Imath::Box2i& box) {
+  return {box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
 }
 
-/// Reads the groups of one part; images in the order of `groups`.
-std::vector<Image> read_groups(const std::filesystem::path& path, Imf::MultiPartInputFile& file, int number,
-                               const std::vector<Group>& groups) {
-  const Imf::Header& header = file.header(number);
-  const Imath::Box2i data = header.dataWindow();
-  const int width = data.max.x - data.min.x + 1;
-  const int height = data.max.y - data.min.y + 1;
-  std::size_t channels = 0;
-  for (const Group& group : groups)
-    channels += group.size();
-  if (static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels > 4 * kMaxImagePixels) {
-    throw malformed_image(path,
-                          fmt::format("{} channels of {}x{} pixels are too much to read", channels, width, height));
-  }
+/// Reads the rows of `window`, which is as wide as the data window; an image for each group.
+std::vector<Image> read_rows(Imf::InputPart& part, const Imath::Box2i& window, const std::vector<Group>& groups) {
+  const glm::ivec2 size = size_of(window);
   std::vector<Image> images;
   Imf::FrameBuffer frame;
   for (const Group& group : groups) {
-    const Image& image = images.emplace_back(width, height, static_cast<int>(group.size()));
-    add_slices(frame, data, image.pixels.data(), group);
+    const Image& image = images.emplace_back(size.x, size.y, static_cast<int>(group.size()));
+    add_slices(frame, window, image.pixels.data(), group);
   }
-  Imf::InputPart part(file, number);
   part.setFrameBuffer(frame);
-  part.readPixels(data.min.y, data.max.y);
-  for (Image& image : images)
-    image = placed(std::move(image), data, header.displayWindow());
+  part.readPixels(window.min.y, window.max.y);
   return images;
 }
 
-void read_part(const std::filesystem::path& path, Imf::MultiPartInputFile& file, const ExrPart& part, bool is_main,
-               const LayerFilter& wanted, PictureFile& result) {
+/// Reads the groups of one part into its display window, 0 around what is stored; images in the order of `groups`.
+/// Where the windows differ, some rows at a time are read and laid there.
+std::vector<Image> read_groups(Imf::MultiPartInputFile& file, int number, const std::vector<Group>& groups,
+                               PixelMemory& memory) {
+  const Imath::Box2i data = file.header(number).dataWindow(), display = file.header(number).displayWindow();
+  std::size_t channels = 0;
+  for (const Group& group : groups)
+    channels += group.size();
+  const glm::ivec2 size = size_of(display);
+  memory.take(size.x, size.y, channels);
+  Imf::InputPart part(file, number);
+  if (data == display) return read_rows(part, data, groups);
+
+  std::vector<Image> images;
+  for (const Group& group : groups)
+    images.emplace_back(size.x, size.y, static_cast<int>(group.size()));
+  const int left = std::max(data.min.x, display.min.x), right = std::min(data.max.x, display.max.x);
+  const int last = std::min(data.max.y, display.max.y);
+  constexpr std::size_t kSomePixels = std::size_t{1} << 24;  // values in all channels
+  const std::size_t row = static_cast<std::size_t>(size_of(data).x) * channels;
+  const int rows = static_cast<int>(std::clamp<std::size_t>(kSomePixels / row, 1, 256));
+  for (int y = std::max(data.min.y, display.min.y); y <= last && left <= right; y += rows) {
+    const Imath::Box2i some({data.min.x, y}, {data.max.x, std::min(y + rows - 1, last)});
+    const std::vector<Image> stored = read_rows(part, some, groups);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const auto count = static_cast<std::size_t>(right - left + 1) * groups[i].size();
+      for (int from = 0; from < stored[i].height; ++from)
+        std::copy_n(stored[i].at(left - data.min.x, from), count,
+                    images[i].at(left - display.min.x, y + from - display.min.y));
+    }
+  }
+  return images;
+}
+
+void read_part(Imf::MultiPartInputFile& file, const ExrPart& part, bool is_main, const LayerFilter& wanted,
+               PixelMemory& memory, PictureFile& result) {
   const Imf::Header& header = file.header(part.number);
   read_attributes(header, result.attributes);
   std::map<std::string, Group> layers = part.layers;
@@ -235,18 +246,37 @@ void read_part(const std::filesystem::path& path, Imf::MultiPartInputFile& file,
     targets.push_back(&result.layers[name]);
   }
   if (groups.empty()) return;
-  std::vector<Image> images = read_groups(path, file, part.number, groups);
+  std::vector<Image> images = read_groups(file, part.number, groups, memory);
   for (std::size_t i = 0; i < images.size(); ++i)
     *targets[i] = std::move(images[i]);
 }
 
-PictureFile read_parts(const std::filesystem::path& path, const LayerFilter& wanted) {
+/// What the library unpacks at a time is a chunk in all its channels, read or not: a part stays below 128 MiB, or below
+/// what deflate can have packed into the file.
+void check_stored(const std::filesystem::path& path, const Imf::Header& header, std::uint64_t file_bytes) {
+  const std::string what = fmt::format("cannot read image '{}'", path.string());
+  for (const Imath::Box2i& box : {header.dataWindow(), header.displayWindow()}) {
+    const auto side = [](int low, int high) { return static_cast<long long>(high) - low + 1; };
+    check_image_size(side(box.min.x, box.max.x), side(box.min.y, box.max.y), what);
+  }
+  std::uint64_t pixel_bytes = 0;
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
+    pixel_bytes += it.channel().type == Imf::HALF ? 2U : 4U;
+  const glm::ivec2 size = size_of(header.dataWindow());
+  const std::uint64_t stored = pixel_bytes * static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+  if (stored > std::max(std::uint64_t{128} << 20, 1032 * file_bytes))
+    throw malformed_image(path, fmt::format("{}x{} pixels of {} bytes cannot lie in a file of {} bytes", size.x, size.y,
+                                            pixel_bytes, file_bytes));
+}
+
+PictureFile read_parts(const std::filesystem::path& path, std::uint64_t file_bytes, const LayerFilter& wanted) {
   PictureFile result;
   Imf::MultiPartInputFile file(path.c_str());
   std::vector<ExrPart> parts;
   for (int number = 0; number < file.parts(); ++number) {
     const Imf::Header& header = file.header(number);
     if (header.hasType() && Imf::isDeepData(header.type())) continue;
+    check_stored(path, header, file_bytes);
     parts.push_back(group_channels(header, number));
   }
   if (parts.empty()) throw malformed_image(path, "it has nothing but deep data; flat images are read");
@@ -258,10 +288,11 @@ PictureFile read_parts(const std::filesystem::path& path, const LayerFilter& wan
   result.pixel_aspect = static_cast<double>(header.pixelAspectRatio());
   if (Imf::hasEnvmap(header))
     result.envmap = Imf::envmap(header) == Imf::ENVMAP_CUBE ? PictureFile::Envmap::cube : PictureFile::Envmap::lat_long;
+  PixelMemory memory(path, file_bytes);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool other_picture = file.header(parts[i].number).displayWindow() != header.displayWindow();
     if (i != main && other_picture) continue;  // no layer of this picture
-    read_part(path, file, parts[i], i == main, wanted, result);
+    read_part(file, parts[i], i == main, wanted, memory, result);
   }
   convert_colors(path, header, result);
   return result;
@@ -269,10 +300,10 @@ PictureFile read_parts(const std::filesystem::path& path, const LayerFilter& wan
 
 }  // namespace
 
-PictureFile read_exr(const std::filesystem::path& path, const LayerFilter& wanted) {
+PictureFile read_exr(const std::filesystem::path& path, std::uint64_t file_bytes, const LayerFilter& wanted) {
   check_exr(path);
   try {
-    return read_parts(path, wanted);
+    return read_parts(path, file_bytes, wanted);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {

@@ -195,6 +195,7 @@ PictureFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes
   // Deflate shrinks at most 1032-fold.
   if (s.stored_row_bytes * static_cast<std::size_t>(s.height) / 1032U > file_bytes)
     throw malformed_image(path, "the PNG file is truncated");
+  PixelMemory(path, file_bytes).take(s.width, s.height, static_cast<std::size_t>(s.channels));
   s.bytes.resize(total);
   set_rows(s, row_bytes);
   require(guarded(s, read_rows));

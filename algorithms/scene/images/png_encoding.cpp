@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -29,10 +31,14 @@ void encode_as_srgb(PictureFile& file) {
   if (!color.gamma || std::abs(*color.gamma - kUsualGamma) < 0.01) return;
   Image& image = file.image;
   const int colors = std::min(image.channels, 3);
+  std::vector<float> encoded(65536, std::numeric_limits<float>::quiet_NaN());  // by the stored value, in 16 bits
   for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels)) {
     for (int c = 0; c < colors; ++c) {
       float& value = image.pixels[i + static_cast<std::size_t>(c)];
-      value = static_cast<float>(srgb_encoded(std::pow(static_cast<double>(value), 1 / *color.gamma)));
+      float& known = encoded[static_cast<std::size_t>(std::lround(value * 65535.0F))];
+      if (std::isnan(known))
+        known = static_cast<float>(srgb_encoded(std::pow(static_cast<double>(value), 1 / *color.gamma)));
+      value = known;
     }
   }
   file.notes.push_back(fmt::format("encoded as sRGB from the gamma {:.5g} that its header states", *color.gamma));

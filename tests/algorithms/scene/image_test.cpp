@@ -252,6 +252,12 @@ TEST_F(ExrTest, AHeaderThatClaimsTooMuchIsRefusedBeforeAllocating) {
               read_image(write("big.exr", with_data_window(whole, {0, 0, 16383, 16383})));
             }),
             refusal + "the OpenEXR file is truncated or damaged");
+  // Each chunk lies within the file, and none can hold so much.
+  written.image = ramp(8, 4096, 3);
+  write_exr(file("tall.exr"), written);
+  const std::string tall = with_data_window(content(file("tall.exr")), {0, 0, 16383, 4095});
+  EXPECT_NE(message_of([&] { read_image(write("big.exr", tall)); }).find("16384x4096 pixels of 6 bytes cannot lie in"),
+            std::string::npos);
   for (const auto& corners : {std::array<std::int32_t, 4>{5, 5, 4, 4},
                               {0, 0, -1, 7},
                               {-2147483647 - 1, 0, 2147483647, 7},

@@ -120,6 +120,15 @@ TEST_F(PictureFiles, ADisplayWindowTooLargeIsRefusedBeforeAllocating) {
             std::string::npos);
 }
 
+// Sixteen pixels are no reason to take 2 GB, though each side is within its range.
+TEST_F(PictureFiles, AnEmptyPictureOfGreatSizeIsRefusedBeforeAllocating) {
+  const auto path = write_exr_of("a.exr", {{0, 0}, {13999, 11999}}, {{0, 0}, {3, 3}}, kRgb);
+  EXPECT_NE(test::message_of([&] { read_picture(path); }).find("3 channels of 14000x12000 pixels are too much to read"),
+            std::string::npos);
+  const auto below = write_exr_of("b.exr", {{0, 0}, {1399, 1199}}, {{1300, 1100}, {1303, 1103}}, kRgb);
+  EXPECT_EQ(read_picture(below).image.at(1303, 1103)[0], 1 + 1303 + 100 * 1103);
+}
+
 TEST_F(PictureFiles, ManyChannelsAndOnlyThoseThatAreWanted) {
   Channels channels = kRgb;
   for (int i = 0; i < 300; ++i)
@@ -286,6 +295,31 @@ TEST_F(PictureFiles, APngsGammaIsFollowedAndTheRestIsTold) {
               png_set_cHRM(p, i, 0.3127, 0.329, 0.708, 0.292, 0.17, 0.797, 0.131, 0.046);
             }).notes.size(),
             1U);
+}
+
+// One bit a pixel packs 1032-fold and becomes three numbers of 32 bits.
+TEST_F(PictureFiles, APngThatUnpacksToGigabytesIsRefusedBeforeAllocating) {
+  constexpr png_uint_32 kWidth = 16384, kHeight = 8192;
+  std::FILE* out = std::fopen(file("a.png").c_str(), "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, out);
+  png_set_IHDR(png, info, kWidth, kHeight, 1, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  const png_color black{};
+  png_set_PLTE(png, info, &black, 1);
+  png_set_compression_level(png, 1);
+  png_write_info(png, info);
+  const std::vector<png_byte> row(kWidth / 8);
+  for (png_uint_32 y = 0; y < kHeight; ++y)
+    png_write_row(png, row.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(out);
+  EXPECT_NE(test::message_of([&] {
+              read_picture(file("a.png"));
+            }).find("3 channels of 16384x8192 pixels are too much to read: 1536 MiB"),
+            std::string::npos);
 }
 
 TEST(ExactPixel, IsHalfWhereHalfHoldsEveryValue) {
