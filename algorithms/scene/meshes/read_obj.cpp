@@ -159,13 +159,18 @@ class ObjReader {
 
   void face() {
     faces_.begin();
-    while (!lines_.at_end_of_line()) {
-      const Corner c = corner(lines_.word());
+    std::size_t corners = 0;
+    bool slash = false;  // at the last corner's end
+    for (; !lines_.at_end_of_line(); ++corners) {
+      const std::string_view word = lines_.word();
+      slash = word.back() == '/';
+      const Corner c = corner(word);
       const std::uint32_t point = resolve(c.point, points_.size(), "a face names vertex");
       const std::uint32_t uv = c.uv != 0 ? resolve(c.uv, uvs_.size(), "a face names texture vertex") : kNone;
       const std::uint32_t normal = c.normal != 0 ? resolve(c.normal, normals_.size(), "a face names normal") : kNone;
       faces_.corner(vertex(point, uv, normal));
     }
+    if (lines_.open_ended() && (corners < 3 || slash)) fail("the file ends inside a face,");
   }
 
   /// The mesh's vertex for a triple of indices, made at its first use.

@@ -74,10 +74,11 @@ class OffReader {
     layout.uvs = take("ST");
     layout.colors = take("C");
     layout.normals = take("N");
-    if (take("4") || take("n")) throw fail("OFF of four or n dimensions is not read");
+    if (take("4") || take("n"))
+      throw fail("points of four or n dimensions (4OFF, nOFF) are not read; OFF, COFF, NOFF and STOFF are, as text");
     if (!take("OFF")) throw fail("malformed OFF header");
     lines_.skip(lines_.line().size() - line.size());
-    if (lines_.line().starts_with("BINARY")) throw fail("binary OFF is not read");
+    if (lines_.line().starts_with("BINARY")) throw fail("binary OFF is not read; OFF as text is");
     return layout;
   }
 

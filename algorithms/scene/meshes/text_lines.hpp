@@ -22,6 +22,7 @@ class TextLines {
       line_ = rest_.substr(0, end);
       if (end == std::string_view::npos) {
         rest_ = {};
+        open_ended_ = true;
       } else {
         const bool pair = rest_[end] == '\r' && end + 1 < rest_.size() && rest_[end + 1] == '\n';
         rest_.remove_prefix(end + (pair ? 2 : 1));
@@ -37,6 +38,7 @@ class TextLines {
   std::size_t number() const { return number_; }   ///< of the line, from 1
   std::string_view line() const { return line_; }  ///< what is left of it
   bool at_end_of_line() const { return line_.empty(); }
+  bool open_ended() const { return open_ended_; }  ///< the text ends here, in the middle of a line it may be
 
   /// Passes over characters of the line.
   void skip(std::size_t characters) {
@@ -73,7 +75,7 @@ class TextLines {
     line_.remove_prefix(n);
   }
   std::string_view rest_, line_;
-  bool comments_;
+  bool comments_, open_ended_ = false;
   std::size_t number_;
 };
 

@@ -51,8 +51,9 @@ TEST_F(TextMeshes, OffInItsDialects) {
 }
 
 TEST_F(TextMeshes, DamagedOffIsRefused) {
-  EXPECT_EQ(refusal("a.off", "OFF BINARY\n8 6 0\n"), "binary OFF is not read");
-  EXPECT_EQ(refusal("a.off", off("4OFF\n8 6 0\n")), "OFF of four or n dimensions is not read");
+  EXPECT_EQ(refusal("a.off", "OFF BINARY\n8 6 0\n"), "binary OFF is not read; OFF as text is");
+  EXPECT_EQ(refusal("a.off", off("4OFF\n8 6 0\n")),
+            "points of four or n dimensions (4OFF, nOFF) are not read; OFF, COFF, NOFF and STOFF are, as text");
   EXPECT_EQ(refusal("a.off", off("OFF\n8 6 0\n", " 1 2 3")),
             "vertex 0 has more numbers than its keyword says in line 3");
   EXPECT_EQ(refusal("a.off", off("OFF\n8 6 0\n") + "4 0 1 3 2\n"),
@@ -120,6 +121,14 @@ TEST_F(TextMeshes, DamagedObjIsRefused) {
   EXPECT_EQ(refusal("a.obj", "v 0 0\n"), "v needs 3 numbers in line 1");
   EXPECT_EQ(refusal("a.obj", "v 0 0 0\nf 1/1 1 1\n"), "a face names texture vertex 1 of 0 in line 2");
   EXPECT_EQ(refusal("a.obj", "surf 0 1 0 1 1 2\n"), "'surf': free-form geometry and calls are not read, in line 1");
+  // The end of the file is the end of a line only where all of a face is there.
+  const std::string box = obj("", {"{}"});
+  expect_box("a.obj", box.substr(0, box.size() - 1));
+  for (const char* cut : {"f", "f ", "f 1", "f 1 2", "f 1 2 "})
+    EXPECT_EQ(refusal("a.obj", box + cut), "the file ends inside a face, in line 15") << cut;
+  EXPECT_EQ(refusal("a.obj", obj("vt 0 0\n", {"{}/1"}) + "f 1/1 2/1 3/"), "the file ends inside a face, in line 16");
+  EXPECT_EQ(expect_box("a.obj", box + "f 1 2\n").warnings,
+            std::vector<std::string>{"1 faces of fewer than three corners are left out"});
   EXPECT_EQ(refusal("a.obj", "hello\n"), "'hello' is no statement of OBJ in line 1");
 }
 
