@@ -14,7 +14,27 @@
 
 namespace {
 
+namespace fs = std::filesystem;
+
 const pellucid::fuzz::Target* chosen = nullptr;
+
+/// For the inputs of this process: in memory where there is such a file system, since a run writes a million files.
+struct Folder {
+  fs::path path;
+  Folder() {
+    const fs::path memory = "/dev/shm";
+    std::error_code error;
+    path = (fs::is_directory(memory, error) ? memory : fs::temp_directory_path()) /
+           fmt::format("pellucid-fuzz-{}", ::getpid());
+    fs::create_directories(path);
+  }
+  ~Folder() {
+    std::error_code error;
+    fs::remove_all(path, error);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+};
 
 }  // namespace
 
@@ -35,16 +55,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  namespace fs = std::filesystem;
-  // In memory where there is such a file system: a million files a run.
-  static const fs::path folder = [] {
-    const fs::path memory = "/dev/shm";
-    std::error_code error;
-    const fs::path made = (fs::is_directory(memory, error) ? memory : fs::temp_directory_path()) /
-                          fmt::format("pellucid-fuzz-{}", ::getpid());
-    fs::create_directories(made);
-    return made;
-  }();
-  pellucid::fuzz::run(*chosen, folder, {reinterpret_cast<const char*>(data), size});
+  static const Folder folder;
+  pellucid::fuzz::run(*chosen, folder.path, {reinterpret_cast<const char*>(data), size});
   return 0;
 }
