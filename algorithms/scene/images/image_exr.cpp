@@ -301,7 +301,7 @@ PictureFile read_parts(const std::filesystem::path& path, std::uint64_t file_byt
 }  // namespace
 
 PictureFile read_exr(const std::filesystem::path& path, std::uint64_t file_bytes, const LayerFilter& wanted) {
-  check_exr(path);
+  check_exr(path, file_bytes);
   try {
     return read_parts(path, file_bytes, wanted);
   } catch (const InputError&) {

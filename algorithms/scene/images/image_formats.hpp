@@ -31,7 +31,7 @@ class PixelMemory {
 InputError malformed_image(const std::filesystem::path&, std::string_view reason);
 
 /// An EXR header's claims, checked before anything of that size is allocated: windows within bounds, and every
-/// chunk of each flat part within the file.
-void check_exr(const std::filesystem::path&);
+/// attribute and every chunk of each flat part within the file.
+void check_exr(const std::filesystem::path&, std::uint64_t file_bytes);
 
 }  // namespace pellucid

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csetjmp>
@@ -6,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <span>
@@ -73,9 +75,8 @@ struct ReadSession : Session {
 void read_header(Session& s) {
   png_init_io(s.png, s.file);
   png_set_crc_action(s.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-  png_set_user_limits(s.png, 0x7fffffff, 0x7fffffff);  // our own limit is checked, and worded, by the caller
-  // A chunk's length is memory before it is found to be longer than the file.
-  png_set_chunk_malloc_max(s.png, png_alloc_size_t{1} << 26);
+  png_set_user_limits(s.png, 0x7fffffff, 0x7fffffff);          // our own limit is checked, and worded, by the caller
+  png_set_chunk_malloc_max(s.png, png_alloc_size_t{1} << 26);  // what a packed text or profile may become
   png_read_info(s.png, s.info);
   s.width = static_cast<int>(png_get_image_width(s.png, s.info));
   s.height = static_cast<int>(png_get_image_height(s.png, s.info));
@@ -178,9 +179,27 @@ png_byte to_byte(float v) {
   return static_cast<png_byte>(std::lround(std::min(v, 1.0F) * 255.0F));
 }
 
+/// Every chunk must end within the file: libpng takes memory for one before it reads it.
+void check_chunk_lengths(const std::filesystem::path& path, std::uint64_t file_bytes) {
+  constexpr std::uint64_t kSignature = 8, kAround = 12;  // length, type and check sum
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 8> head{};
+  for (std::uint64_t at = kSignature;;) {
+    if (at + kAround > file_bytes) throw malformed_image(path, "the PNG file is truncated or damaged");
+    file.seekg(static_cast<std::streamoff>(at));
+    file.read(reinterpret_cast<char*>(head.data()), head.size());
+    const std::uint64_t length = std::uint64_t{head[0]} << 24U | head[1] << 16U | head[2] << 8U | head[3];
+    if (!file || length > file_bytes - at - kAround)
+      throw malformed_image(path, "the PNG file is truncated or damaged");
+    if (std::memcmp(head.data() + 4, "IEND", 4) == 0) return;
+    at += kAround + length;
+  }
+}
+
 }  // namespace
 
 PictureFile read_png(const std::filesystem::path& path, std::uint64_t file_bytes) {
+  check_chunk_lengths(path, file_bytes);
   ReadSession s;
   s.file = std::fopen(path.c_str(), "rb");
   if (s.file == nullptr) throw malformed_image(path, std::strerror(errno));

@@ -266,6 +266,21 @@ TEST_F(ExrTest, AHeaderThatClaimsTooMuchIsRefusedBeforeAllocating) {
   }
 }
 
+// The C++ library reads a value by its type, and what follows by the size that is stated.
+TEST_F(ExrTest, AnAttributeOfAnotherSizeThanItsTypeIsRefused) {
+  write_channels("a.exr", {"R", "G", "B"}, Imf::NO_COMPRESSION);
+  const std::string whole = content(file("a.exr"));
+  for (const std::string_view key :
+       {std::string_view("compression\0compression\0", 24), std::string_view("\0chlist\0", 8)}) {
+    for (const char size : {'\0', '\2', '\x7f'}) {
+      std::string damaged = whole;
+      damaged.at(damaged.find(key) + key.size()) = size;
+      EXPECT_EQ(message_of([&] { read_image(write("b.exr", damaged)); }),
+                "cannot read image '" + file("b.exr").string() + "': the OpenEXR file is truncated or damaged");
+    }
+  }
+}
+
 TEST_F(ExrTest, ChannelsWithoutColourAreNamed) {
   write_channels("z.exr", {"N.x", "Z"}, Imf::ZIP_COMPRESSION);
   EXPECT_EQ(message_of([&] { read_image(file("z.exr")); }),
@@ -371,6 +386,14 @@ TEST_F(PngTest, AnyTruncationOrDamageIsAnInputError) {
   }
 }
 
+TEST_F(PngTest, AChunkBeyondTheEndIsRefused) {
+  write_png(file("a.png"), ramp(8, 8, 3), {{"pellucid.scene", "s"}});
+  std::string whole = content(file("a.png"));
+  whole.at(whole.find("iTXt") - 4) = '\x30';  // of 800 MB
+  EXPECT_EQ(message_of([&] { read_image(write("b.png", whole)); }),
+            "cannot read image '" + file("b.png").string() + "': the PNG file is truncated or damaged");
+}
+
 TEST_F(PngTest, AHugeHeaderIsRefused) {
   std::FILE* out = std::fopen(file("big.png").c_str(), "wb");
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -381,6 +404,7 @@ TEST_F(PngTest, AHugeHeaderIsRefused) {
   png_write_info(png, info);
   const png_byte data[] = {0x78, 0x9c};
   png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), data, sizeof data);
+  png_write_chunk(png, reinterpret_cast<png_const_bytep>("IEND"), nullptr, 0);
   png_destroy_write_struct(&png, &info);
   std::fclose(out);
   EXPECT_EQ(message_of([&] { read_image(file("big.png")); }),
