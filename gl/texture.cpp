@@ -272,7 +272,7 @@ void Texture::set_sampling(Filter filter, Wrap wrap) {
   GLint mode = GL_CLAMP_TO_EDGE;
   if (wrap == Wrap::repeat) mode = GL_REPEAT;
   if (wrap == Wrap::border) mode = GL_CLAMP_TO_BORDER;
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+  for (const GLenum axis : std::array<GLenum, 3>{GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(id(), axis, mode);
   check("set sampling", label_);
 }

@@ -12,7 +12,7 @@ namespace {
 
 const std::string kVertex = "algorithms/translucent_relief/relief.vert.glsl";
 const std::string kFragment = "algorithms/translucent_relief/relief.frag.glsl";
-constexpr int kFirstCountUnit = 12;  // of bare_relief.frag.glsl
+constexpr GLuint kFirstCountUnit = 12;  // of bare_relief.frag.glsl
 
 }  // namespace
 
@@ -218,7 +218,7 @@ ReliefPass::FetchCounts ReliefPass::count_fetches(const Scene& scene, const Came
 
 void ReliefPass::draw_bare(const Scene& scene, const Camera& camera, const ForwardPass& forward) const {
   for (std::size_t i = 0; i < fetch_counts_.size(); ++i)
-    fetch_counts_[i].bind(kFirstCountUnit + static_cast<int>(i));
+    fetch_counts_[i].bind(kFirstCountUnit + static_cast<GLuint>(i));
   for (const Instance& instance : scene.instances) {
     if (instance.relief >= 0) draw_mesh(scene, instance, camera, forward, bare_);
   }

@@ -70,7 +70,7 @@ DisplayProgram::Lut::Lut(std::string name, GLenum kind, GLenum internal_format, 
   const GLint filter = smooth ? GL_LINEAR : GL_NEAREST;
   glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, filter);
   glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter);
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+  for (const GLenum axis : std::array<GLenum, 3>{GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(id, axis, GL_CLAMP_TO_EDGE);
   check("allocate the display transform's LUT", label);
   account_bytes(static_cast<std::ptrdiff_t>(bytes));
