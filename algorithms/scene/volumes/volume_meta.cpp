@@ -190,8 +190,10 @@ VolumeFile load_meta_image(const fs::path& path) {
   place.offset = local ? text.bytes : 0;
   if (const std::string skip = text.text("HeaderSize", "0"); skip == "-1") {
     place.from_end = true;
-  } else if (!local) {
-    place.offset = static_cast<std::uintmax_t>(header_size(path, "HeaderSize", skip));
+  } else if (const int bytes = header_size(path, "HeaderSize", skip); !local || bytes > 0) {
+    if (local && static_cast<std::size_t>(bytes) < text.bytes)
+      fail_volume(path, fmt::format("HeaderSize = {} lies within its header of {} bytes", bytes, text.bytes));
+    place.offset = static_cast<std::uintmax_t>(bytes);
     place.may_follow = text.has("HeaderSize");
   }
   return read_voxels(path, header, place);

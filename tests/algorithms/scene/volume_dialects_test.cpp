@@ -177,6 +177,15 @@ TEST_F(VolumeDialects, MetaImages) {
   expect_spacing("a.mhd", detached + "slice%03d.raw\n", kSpacing);
   EXPECT_EQ(error_of("a.mhd", detached + "other%03d.raw 1 2 1\n"), "its voxels lie in several files; one is read");
 
+  // Where the voxels are in the header's own file, HeaderSize counts from that file's start.
+  const std::string local = meta("HeaderSize = 200\nElementSpacing = 0.25 0.5 1\n");
+  const std::string head = local.substr(0, local.find("LOCAL\n") + 6);
+  expect_spacing("a.mha", head + std::string(200 - head.size(), ' ') + shorts(), kSpacing);
+  EXPECT_EQ(
+      error_of("a.mha", meta("HeaderSize = 20\n")),
+      fmt::format("HeaderSize = 20 lies within its header of {} bytes", meta("HeaderSize = 20\n").find("LOCAL\n") + 6));
+  EXPECT_EQ(error_of("a.mha", meta("HeaderSize = 9999\n")), "0 bytes of voxels where its header promises 48");
+
   EXPECT_EQ(error_of("a.mha", meta("ElementSpacing = 0.25 0.5 -1\n")),
             "a voxel spacing of -1 along z; it must be above 0");
   EXPECT_EQ(error_of("a.mha", meta("ElementSpacing = 0.25 0.5 0\n")),
