@@ -191,7 +191,7 @@ class Variation {
         Setting& setting = settings_[key(technique, name)];
         setting.name = name;
         auto found = std::find_if(setting.values.begin(), setting.values.end(),
-                                  [&](const auto& known) { return known.first == value; });
+                                  [&value = value](const auto& known) { return known.first == value; });
         if (found == setting.values.end()) found = setting.values.insert(found, {value, 0});
         ++found->second;
         const auto raw = row->find(name);

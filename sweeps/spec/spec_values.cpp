@@ -44,7 +44,7 @@ void add_values(TableReader& reader, const std::string& prefix, std::vector<Name
 std::vector<PlacedText> distinct_texts(TableReader& reader, std::string_view key, Need need, bool may_be_empty) {
   std::vector<PlacedText> result;
   for (auto& [text, at] : reader.texts(key, need)) {
-    const auto same = [&](const PlacedText& other) { return other.text == text; };
+    const auto same = [&text = text](const PlacedText& other) { return other.text == text; };
     if (std::any_of(result.begin(), result.end(), same)) reader.fail(at, fmt::format("{} lists '{}' twice", key, text));
     result.push_back({std::move(text), at});
   }

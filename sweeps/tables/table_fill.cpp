@@ -23,7 +23,8 @@ Fields fields_of(std::initializer_list<const TableEntry*> entries, const Variabl
   Fields fields;
   for (const TableEntry* entry : entries) {
     for (const auto& [field, values] : entry->where) {
-      auto found = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.first == field; });
+      auto found =
+          std::find_if(fields.begin(), fields.end(), [&field = field](const auto& f) { return f.first == field; });
       if (found == fields.end()) found = fields.insert(found, {field, {}});
       found->second.clear();
       for (const Value& value : values) {

@@ -94,7 +94,7 @@ std::string json_list(const Table& table) {
     nlohmann::ordered_json& entry = list.emplace_back(nlohmann::ordered_json::object());
     for (const auto& [name, value] : record) {
       if (value) {
-        std::visit([&](const auto& v) { entry[name] = v; }, *value);
+        std::visit([&, &name = name](const auto& v) { entry[name] = v; }, *value);
       } else {
         entry[name] = nullptr;
       }

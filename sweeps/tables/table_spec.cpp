@@ -151,7 +151,7 @@ void check_texts(const TableSpec& spec) {
       for (const auto& [name, family] : spec.families) {
         for (const auto& [field, values] : family.where) {
           for (const Value& value : values)
-            at(family.at, [&] { expand(to_text(value), merged(all, family.variables)); });
+            at(family.at, [&, &family = family] { expand(to_text(value), merged(all, family.variables)); });
         }
       }
     }

@@ -128,7 +128,7 @@ TEST_P(HardVolumes, FullDensity) {
       EXPECT_NEAR(image.at(30, 22)[2], 0.15F, 1e-6F);
       EXPECT_EQ(image.at(30, 22)[3], 0.0F) << "transmittance";
     }
-    auto lit = [&] {
+    auto lit = [&, &density = density, &extinction = extinction] {
       Scene s = aligned_fog(extinction, {4, 4, 4}, density);
       s.lights.push_back(lamp({0.5F, 0.7F, 2.0F}, 10.0F));
       return s;

@@ -224,7 +224,7 @@ void ViewerWindow::click(const std::string& id, double share) {
 
 void ViewerWindow::drag(const std::string& id, double from, double to) {
   const auto [x, y, width, height] = place(id);
-  const auto at = [&](double share) { return std::to_string(x + static_cast<int>(share * width)); };
+  const auto at = [x = x, width = width](double share) { return std::to_string(x + static_cast<int>(share * width)); };
   const std::string row = std::to_string(y + height / 2);
   xdotool({"mousemove", "--window", id_, at(from), row, "mousedown", "1", "mousemove", "--window", id_,
            at((from + to) / 2), row, "mousemove", "--window", id_, at(to), row, "mouseup", "1"});

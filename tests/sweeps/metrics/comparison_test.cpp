@@ -265,7 +265,8 @@ TEST(Comparison, IsTheSameFromSeveralThreads) {
   const Comparison comparison(reference);
   const auto expected = comparison.compare(test).values;
   std::vector<ComparisonResult> results(6);
-  tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) { results[i] = comparison.compare(test); });
+  tbb::parallel_for(std::size_t{0}, results.size(),
+                    [&, &test = test](std::size_t i) { results[i] = comparison.compare(test); });
   for (const ComparisonResult& result : results)
     EXPECT_EQ(result.values, expected);
 }
