@@ -17,6 +17,7 @@
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfTileDescription.h>
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
@@ -267,6 +268,12 @@ void check_stored(const std::filesystem::path& path, const Imf::Header& header, 
   if (stored > std::max(std::uint64_t{128} << 20, 1032 * file_bytes))
     throw malformed_image(path, fmt::format("{}x{} pixels of {} bytes cannot lie in a file of {} bytes", size.x, size.y,
                                             pixel_bytes, file_bytes));
+  if (!header.hasTileDescription()) return;
+  const Imf::TileDescription& tile = header.tileDescription();
+  const double tile_bytes = static_cast<double>(pixel_bytes) * tile.xSize * tile.ySize;
+  if (tile_bytes > static_cast<double>(std::max(std::uint64_t{64} << 20, stored)))
+    throw malformed_image(path, fmt::format("its tiles of {}x{} pixels are too large for its {}x{} pixels", tile.xSize,
+                                            tile.ySize, size.x, size.y));
 }
 
 PictureFile read_parts(const std::filesystem::path& path, std::uint64_t file_bytes, const LayerFilter& wanted) {

@@ -194,6 +194,13 @@ TEST_F(ExrTest, TiledFilesAreRead) {
     out.writeTiles(0, out.numXTiles() - 1, 0, out.numYTiles() - 1);
   }
   EXPECT_EQ(read_image(file("t.exr")).image.pixels, std::vector<float>(50 * 30 * 3, 0.25F));
+  // A tile is memory whether the picture fills it or not.
+  std::string damaged = content(file("t.exr"));
+  const auto at = damaged.find(std::string("tiledesc\0", 9)) + 9 + 4;
+  damaged.replace(at, 8, std::string("\x20\x4e\0\0\x20\x4e\0\0", 8));  // 20,000 a side
+  EXPECT_EQ(message_of([&] { read_image(write("d.exr", damaged)); }),
+            "cannot read image '" + file("d.exr").string() +
+                "': its tiles of 20000x20000 pixels are too large for its 50x30 pixels");
 }
 
 TEST_F(ExrTest, AnyTruncationIsAnInputError) {
