@@ -155,6 +155,8 @@ std::string nearest_name(std::string_view wanted, std::span<const std::string> c
   std::size_t best = std::max<std::size_t>(2, wanted.size() / 3) + 1;
   std::string nearest;
   for (const std::string& candidate : candidates) {
+    const std::size_t shorter = std::min(wanted.size(), candidate.size());
+    if (std::max(wanted.size(), candidate.size()) - shorter >= best) continue;  // a page of text is no misspelt name
     const std::size_t distance = edit_distance(wanted, candidate);
     if (distance < best) {
       best = distance;
