@@ -252,7 +252,7 @@ void read_part(Imf::MultiPartInputFile& file, const ExrPart& part, bool is_main,
     *targets[i] = std::move(images[i]);
 }
 
-/// What the library unpacks at a time is a chunk in all its channels, read or not: a part stays below 128 MiB, or below
+/// The library unpacks a chunk at a time, in all its channels, read or not: a part stays below 128 MiB, or below
 /// what deflate can have packed into the file.
 void check_stored(const std::filesystem::path& path, const Imf::Header& header, std::uint64_t file_bytes) {
   const std::string what = fmt::format("cannot read image '{}'", path.string());

@@ -188,7 +188,9 @@ void check_chunk_lengths(const std::filesystem::path& path, std::uint64_t file_b
     if (at + kAround > file_bytes) throw malformed_image(path, "the PNG file is truncated or damaged");
     file.seekg(static_cast<std::streamoff>(at));
     file.read(reinterpret_cast<char*>(head.data()), head.size());
-    const std::uint64_t length = std::uint64_t{head[0]} << 24U | head[1] << 16U | head[2] << 8U | head[3];
+    std::uint64_t length = 0;  // big-endian
+    for (std::size_t i = 0; i < 4; ++i)
+      length = length << 8U | head[i];
     if (!file || length > file_bytes - at - kAround)
       throw malformed_image(path, "the PNG file is truncated or damaged");
     if (std::memcmp(head.data() + 4, "IEND", 4) == 0) return;
