@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "algorithms/scene/files/tell.hpp"
+#include "gl/display/display.hpp"
 #include "gl/error.hpp"
 #include "sandbox/commands/command_line.hpp"
 #include "sandbox/commands/commands.hpp"
@@ -27,6 +28,7 @@ void check_standard_output() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  gl::on_display_warning([](const std::string& line) { tell("warning: {}", line); });
   sandbox::cli::CommandLine command_line(
       "pellucid", "Pellucid: a research sandbox for real-time transparency, translucency and scattering",
       PELLUCID_VERSION);

@@ -242,4 +242,12 @@ std::vector<std::pair<std::string, std::string>> DisplayTransform::views() const
   return pairs;
 }
 
+void on_display_warning(std::function<void(const std::string&)> tell) {
+  OCIO::SetLoggingFunction([tell = std::move(tell)](const char* message) {
+    const std::string line = one_line(message);  // "[OpenColorIO Warning]: …"
+    const auto head = line.find("]: ");
+    tell("OpenColorIO: " + (head == std::string::npos ? line : line.substr(head + 3)));
+  });
+}
+
 }  // namespace pellucid::gl

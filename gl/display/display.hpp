@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -47,5 +48,9 @@ class DisplayTransform {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Takes the warnings that OpenColorIO would print by itself, each as one line: "OpenColorIO: At line 6, unknown key
+/// …".
+void on_display_warning(std::function<void(const std::string&)> tell);
 
 }  // namespace pellucid::gl

@@ -242,6 +242,14 @@ TEST_F(Render, ReadsAnotherColourConfigAndRefusesABrokenOne) {
   const auto broken = write_file(folder / "broken.ocio", "ocio_profile_version: 2\nroles: [\n");
   EXPECT_TRUE(
       refused(render(folder / "out.png", {}, {.environment = {{"OCIO", broken.string()}}}), 2, {"broken.ocio"}));
+  // OpenColorIO's own warnings are lines of ours, without what a terminal obeys.
+  const auto odd = write_file(folder / "odd.ocio",
+                              "ocio_profile_version: 2\nroles: {default: raw}\ndisplays:\n  sRGB:\n"
+                              "    - !<View> {name: Raw, colorspace: raw, \"odd\\ekey\": 1}\n"
+                              "colorspaces:\n  - !<ColorSpace> {name: raw}\n");
+  const Outcome warned = render(folder / "out.png", {}, {.environment = {{"OCIO", odd.string()}}});
+  EXPECT_NE(warned.err.find("warning: OpenColorIO: At line 5, unknown key 'odd\\x1bkey' in 'View'"), std::string::npos)
+      << warned.err;
   // An EXR stays scene-linear: nobody needs the config.
   EXPECT_TRUE(succeeded(render(folder / "out.exr", {}, {.environment = {{"OCIO", broken.string()}}})));
 }
