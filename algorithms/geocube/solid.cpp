@@ -7,11 +7,6 @@
 #include <limits>
 #include <utility>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>  // Debian 12
-#endif
 #include <fmt/format.h>
 
 #include "algorithms/geocube/weld.hpp"
@@ -51,27 +46,7 @@ std::string where_open(const Welded& surface, const Topology& found) {
                      place(middle));
 }
 
-void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction, double begin) {
-  ray.org_x = static_cast<float>(origin.x);
-  ray.org_y = static_cast<float>(origin.y);
-  ray.org_z = static_cast<float>(origin.z);
-  ray.dir_x = static_cast<float>(direction.x);
-  ray.dir_y = static_cast<float>(direction.y);
-  ray.dir_z = static_cast<float>(direction.z);
-  ray.tnear = static_cast<float>(begin);
-  ray.tfar = std::numeric_limits<float>::infinity();
-  ray.mask = ~0U;
-}
-
 }  // namespace
-
-void Solid::Release::operator()(RTCDeviceTy* device) const {
-  rtcReleaseDevice(device);
-}
-
-void Solid::Release::operator()(RTCSceneTy* scene) const {
-  rtcReleaseScene(scene);
-}
 
 Solid::Solid(const Mesh& mesh, Holes holes) : name_(mesh.name), normals_(mesh.normals) {
   if (mesh.triangles.empty()) throw refused(name_, "it has no triangles");
@@ -128,29 +103,12 @@ Solid::Solid(const Mesh& mesh, Holes holes) : name_(mesh.name), normals_(mesh.no
 }
 
 void Solid::build_rays() {
-  device_.reset(rtcNewDevice(nullptr));
-  if (!device_) throw RuntimeError("Embree gives no device on this machine");
-  rays_.reset(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(rays_.get(), RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  const auto positions = tree_.positions();
-  const auto triangles = tree_.triangles();
-  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), positions.size()));
-  auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   sizeof(glm::uvec3), triangles.size()));
-  if (vertices == nullptr || indices == nullptr) {
-    rtcReleaseGeometry(geometry);
-    throw RuntimeError(fmt::format("Embree has no memory for mesh '{}'", name_));
-  }
-  std::transform(positions.begin(), positions.end(), vertices, [](const glm::dvec3& p) { return glm::vec3(p); });
-  std::copy(triangles.begin(), triangles.end(), indices);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(rays_.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(rays_.get());
-  if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
-    throw RuntimeError(fmt::format("Embree failed while building a mesh (error {})", static_cast<int>(error)));
+  std::vector<glm::vec3> positions;
+  positions.reserve(tree_.positions().size());
+  for (const glm::dvec3& p : tree_.positions())
+    positions.emplace_back(p);
+  device_ = embree::make_device();
+  rays_ = embree::triangles_bvh(device_, positions, tree_.triangles(), name_);
 }
 
 std::optional<std::uint32_t> Solid::source(std::uint32_t triangle) const {
@@ -170,25 +128,16 @@ glm::dvec3 Solid::shading_normal(std::uint32_t triangle, const glm::dvec3& weigh
 }
 
 std::optional<SurfaceHit> Solid::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double begin) const {
-  RTCRayHit query{};
-  set_ray(query.ray, origin, direction, begin);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(rays_.get(), &query);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(rays_.get(), &context, &query);
-#endif
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const auto coarse = embree::nearest(rays_, {origin, direction, begin, std::numeric_limits<double>::infinity()});
+  if (!coarse) return std::nullopt;
 
   SurfaceHit hit;
-  hit.triangle = query.hit.primID;
+  hit.triangle = coarse->triangle;
   const auto t = tree_.corners(hit.triangle);
   const glm::dvec3 ab = t[1] - t[0], ac = t[2] - t[0], p = glm::cross(direction, ac);
   const double determinant = glm::dot(ab, p);
-  double u = static_cast<double>(query.hit.u), v = static_cast<double>(query.hit.v);
-  hit.distance = static_cast<double>(query.ray.tfar);
+  double u = static_cast<double>(coarse->u), v = static_cast<double>(coarse->v);
+  hit.distance = static_cast<double>(coarse->distance);
   if (std::abs(determinant) > 1e-9 * glm::length(ab) * glm::length(ac)) {
     const glm::dvec3 from_a = origin - t[0], q = glm::cross(from_a, ab);
     u = std::clamp(glm::dot(from_a, p) / determinant, 0.0, 1.0);
@@ -231,17 +180,7 @@ bool Solid::sees(const glm::dvec3& inside, std::uint32_t triangle) const {
 }
 
 bool Solid::blocked(const glm::dvec3& from, const glm::dvec3& way, double share) const {
-  RTCRay ray{};
-  set_ray(ray, from, way, 0);
-  ray.tfar = static_cast<float>(share);
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(rays_.get(), &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(rays_.get(), &context, &ray);
-#endif
-  return ray.tfar < 0;
+  return embree::occluded(rays_, {from, way, 0, share});
 }
 
 }  // namespace pellucid::geocube

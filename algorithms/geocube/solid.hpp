@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,10 +9,8 @@
 #include <glm/glm.hpp>
 
 #include "algorithms/geocube/cones/triangle_tree.hpp"
+#include "algorithms/reference/embree.hpp"
 #include "algorithms/scene/scene.hpp"
-
-struct RTCDeviceTy;
-struct RTCSceneTy;
 
 namespace pellucid::geocube {
 
@@ -64,10 +61,6 @@ class Solid {
   bool sees(const glm::dvec3& inside, std::uint32_t triangle) const;
 
  private:
-  struct Release {
-    void operator()(RTCDeviceTy* device) const;
-    void operator()(RTCSceneTy* scene) const;
-  };
   void build_rays();
   /// True if the surface is met before this share of the way.
   bool blocked(const glm::dvec3& from, const glm::dvec3& way, double share) const;
@@ -82,8 +75,8 @@ class Solid {
   std::size_t capped_holes_ = 0;
   glm::dvec3 low_{0.0}, high_{0.0};
   double volume_ = 0, area_ = 0;
-  std::unique_ptr<RTCDeviceTy, Release> device_;
-  std::unique_ptr<RTCSceneTy, Release> rays_;
+  embree::Device device_;
+  embree::Bvh rays_;
 };
 
 }  // namespace pellucid::geocube

@@ -4,15 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>  // Debian 12
-#endif
-#include <fmt/format.h>
-
-#include "gl/error.hpp"
-
 namespace pellucid {
 namespace {
 
@@ -21,28 +12,9 @@ namespace {
 // left out by name.
 constexpr double kClearance = 1e-6;
 
-void check_embree(RTCDevice device, const char* doing) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error != RTC_ERROR_NONE) {
-    throw RuntimeError(fmt::format("Embree failed while {} (error {})", doing, static_cast<int>(error)));
-  }
-}
-
-void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) {
-  ray.org_x = static_cast<float>(origin.x);
-  ray.org_y = static_cast<float>(origin.y);
-  ray.org_z = static_cast<float>(origin.z);
-  ray.dir_x = static_cast<float>(direction.x);
-  ray.dir_y = static_cast<float>(direction.y);
-  ray.dir_z = static_cast<float>(direction.z);
-  ray.tnear = static_cast<float>(begin);
-  ray.tfar = static_cast<float>(end);
-  ray.mask = ~0U;
-}
-
 // Embree finds the triangle in single precision; where the ray meets it is solved again in double.
 void refine(Hit& hit, const Mesh& mesh, const glm::dmat4& to_world, const glm::dvec3& origin,
-            const glm::dvec3& direction, const RTCRayHit& query) {
+            const glm::dvec3& direction, const embree::Hit& coarse) {
   const auto corner = [&](int i) {
     return glm::dvec3(to_world * glm::dvec4(glm::dvec3(mesh.positions[hit.triangle[i]]), 1.0));
   };
@@ -56,94 +28,43 @@ void refine(Hit& hit, const Mesh& mesh, const glm::dmat4& to_world, const glm::d
     hit.weights = {1.0 - u - v, u, v};
     hit.distance = glm::dot(ac, q) / determinant;
   } else {  // edge-on: nothing to gain
-    const double u = static_cast<double>(query.hit.u), v = static_cast<double>(query.hit.v);
+    const double u = static_cast<double>(coarse.u), v = static_cast<double>(coarse.v);
     hit.weights = {1.0 - u - v, u, v};
-    hit.distance = static_cast<double>(query.ray.tfar);
+    hit.distance = static_cast<double>(coarse.distance);
   }
 }
 
 }  // namespace
 
-void Geometry::Release::operator()(RTCDeviceTy* device) const {
-  rtcReleaseDevice(device);
-}
-
-void Geometry::Release::operator()(RTCSceneTy* scene) const {
-  rtcReleaseScene(scene);
-}
-
 Geometry::Geometry(const Scene& scene, const std::function<bool(int)>& included)
-    : scene_(&scene), device_(rtcNewDevice(nullptr)) {
-  if (!device_) throw RuntimeError("Embree gives no device on this machine");
-  meshes_.resize(scene.meshes.size());
-  root_.reset(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(root_.get(), RTC_SCENE_FLAG_ROBUST);
+    : scene_(&scene), device_(embree::make_device()), meshes_(scene.meshes.size()), root_(embree::empty_bvh(device_)) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     to_world_.emplace_back(instance.to_world);
     normals_.push_back(glm::transpose(glm::inverse(glm::dmat3(instance.to_world))));
     if (included && !included(static_cast<int>(i))) continue;
-    const auto mesh = static_cast<std::size_t>(instance.mesh);
-    if (scene.meshes[mesh].triangles.empty()) continue;
-    if (!meshes_[mesh]) meshes_[mesh] = build(scene.meshes[mesh]);
-    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, meshes_[mesh].get());
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &instance.to_world[0][0]);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(root_.get(), geometry, static_cast<unsigned>(i));
-    rtcReleaseGeometry(geometry);
+    const auto index = static_cast<std::size_t>(instance.mesh);
+    const Mesh& mesh = scene.meshes[index];
+    if (mesh.triangles.empty()) continue;
+    if (!meshes_[index]) meshes_[index] = embree::triangles_bvh(device_, mesh.positions, mesh.triangles, mesh.name);
+    embree::add_instance(device_, root_, meshes_[index], instance.to_world, static_cast<unsigned>(i));
   }
-  rtcCommitScene(root_.get());
-  check_embree(device_.get(), "building the scene");
-}
-
-Geometry::Bvh Geometry::build(const Mesh& mesh) const {
-  Bvh result(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(result.get(), RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree's own buffers are padded as it needs; the mesh's vectors are not.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                           mesh.positions.size());
-  void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                                          mesh.triangles.size());
-  if (vertices == nullptr || indices == nullptr) {
-    rtcReleaseGeometry(geometry);
-    throw RuntimeError(fmt::format("Embree has no memory for mesh '{}'", mesh.name));
-  }
-  std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(vertices));
-  std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<glm::uvec3*>(indices));
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(result.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(result.get());
-  check_embree(device_.get(), "building a mesh");
-  return result;
+  embree::finish(device_, root_);
 }
 
 Hit Geometry::nearest(const glm::dvec3& embree_origin, const glm::dvec3& origin, const glm::dvec3& direction,
                       double begin, double end, float* met_at) const {
-  RTCRayHit query{};
-  set_ray(query.ray, embree_origin, direction, begin, end);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(root_.get(), &query);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(root_.get(), &context, &query);
-#endif
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  const auto coarse = embree::nearest(root_, {embree_origin, direction, begin, end});
+  if (!coarse) return {};
 
-  if (met_at != nullptr) *met_at = query.ray.tfar;
+  if (met_at != nullptr) *met_at = coarse->distance;
   Hit hit;
-  const std::size_t index = query.hit.instID[0];
-  hit.index = static_cast<int>(index);
-  hit.instance = &scene_->instances[index];
+  hit.index = static_cast<int>(coarse->instance);
+  hit.instance = &scene_->instances[coarse->instance];
   const Mesh& mesh = scene_->meshes[static_cast<std::size_t>(hit.instance->mesh)];
-  hit.primitive = query.hit.primID;
-  hit.triangle = mesh.triangles[query.hit.primID];
-  refine(hit, mesh, to_world_[index], origin, direction, query);
+  hit.primitive = coarse->triangle;
+  hit.triangle = mesh.triangles[coarse->triangle];
+  refine(hit, mesh, to_world_[coarse->instance], origin, direction, *coarse);
   return hit;
 }
 
@@ -170,16 +91,7 @@ Hit Geometry::intersect_from(const glm::dvec3& start, const Hit& from, const glm
 }
 
 bool Geometry::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) const {
-  RTCRay ray{};
-  set_ray(ray, origin, direction, begin, end);
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(root_.get(), &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(root_.get(), &context, &ray);
-#endif
-  return ray.tfar < 0.0F;  // Embree's mark of a hit
+  return embree::occluded(root_, {origin, direction, begin, end});
 }
 
 }  // namespace pellucid

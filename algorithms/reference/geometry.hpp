@@ -3,15 +3,12 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "algorithms/reference/embree.hpp"
 #include "algorithms/scene/scene.hpp"
-
-struct RTCDeviceTy;
-struct RTCSceneTy;
 
 /// The objects of a scene, ready for single rays (Embree).
 namespace pellucid {
@@ -45,24 +42,15 @@ class Geometry {
   const glm::dmat3& normal_to_world(int index) const { return normals_[static_cast<std::size_t>(index)]; }
 
  private:
-  struct Release {
-    void operator()(RTCDeviceTy* device) const;
-    void operator()(RTCSceneTy* scene) const;
-  };
-  using Device = std::unique_ptr<RTCDeviceTy, Release>;
-  using Bvh = std::unique_ptr<RTCSceneTy, Release>;
-
-  Bvh build(const Mesh& mesh) const;
-
   Hit nearest(const glm::dvec3& embree_origin, const glm::dvec3& origin, const glm::dvec3& direction, double begin,
               double end, float* met_at = nullptr) const;
 
   const Scene* scene_;
   std::vector<glm::dmat4> to_world_;  // by instance
   std::vector<glm::dmat3> normals_;
-  Device device_;
-  std::vector<Bvh> meshes_;  // null where no instance uses the mesh
-  Bvh root_;
+  embree::Device device_;
+  std::vector<embree::Bvh> meshes_;  // null where no instance uses the mesh
+  embree::Bvh root_;
 };
 
 }  // namespace pellucid
