@@ -119,93 +119,124 @@ int next_cube(const Maps& maps, const glm::vec3& v, float l, int current, std::u
   return best;
 }
 
+/// Step 4 of the paper's listing: how far the way from p, a surface point with the outward unit normal N, is known to
+/// be clear. That is R_C where the ray lies in cone C, which it may not after total reflection; δ at least.
+template <class Maps>
+float first_step(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, const glm::vec3& h, int cube,
+                 const SearchOptions& options) {
+  if (-glm::dot(h, normal) < options.cosine_c - 1e-4F) return options.min_step;
+  return std::max(options.min_step, maps.fetch(cube, p - maps.center(cube)).bounds.w);
+}
+
+/// A point of the ray as a cube sees it: along the unit v from the cube's centre O, at distance l.
+struct PlaceInCube {
+  glm::vec3 v{0.0F};
+  float l = 0;
+};
+template <class Maps>
+PlaceInCube place_in_cube(const Maps& maps, int cube, const glm::vec3& point) {
+  const glm::vec3 from_centre = point - maps.center(cube);
+  const float l = std::max(glm::length(from_centre), 1e-20F);
+  return {from_centre / l, l};
+}
+
+/// How far the march has come. The exit lies between `inside` and t if it was found.
+struct March {
+  float t = 0;
+  float inside = 0;  ///< the last t known to lie inside
+  int cube = 0;
+  int steps = 0;
+  bool found = false;   ///< t lies beyond the exit
+  PlaceInCube outside;  ///< the first cube's view of the last point outside, and its sample there, which tells S and N
+  CubeSample sample;
+};
+
+/// Sec. 2.2 and 2.3: steps of the length that cones A and B and sphere D allow, δ at least, until a point lies outside
+/// for the cube, and for the others that the plane rule names in turn.
+template <class Maps>
+March march(const Maps& maps, const glm::vec3& p, const glm::vec3& h, int cube, float start,
+            const SearchOptions& options) {
+  March m;
+  m.t = start;
+  m.cube = cube;
+  int home = cube, asks = 0;  // who had the point outside, and how many others were asked since
+  std::uint32_t asked = 0;
+  while (!m.found && (m.steps < options.iterations || asks > 0)) {
+    const PlaceInCube at = place_in_cube(maps, m.cube, p + m.t * h);
+    const float sphere = maps.sphere(m.cube);
+    const CubeSample here = maps.fetch(m.cube, at.v);
+    if (at.l < sphere || at.l < here.bounds.x) {
+      if (m.steps < options.iterations) {
+        const float allowed =
+            at.l < sphere ? sphere * sphere_step(at.l / sphere, glm::dot(h, at.v)) : allowed_step(here, at.v, at.l, h);
+        m.inside = m.t;
+        m.t += std::max(allowed, options.min_step);
+        ++m.steps;
+      }
+      home = m.cube;
+      asks = 0;
+      continue;
+    }
+    if (asks == 0) {
+      ++m.steps;
+      m.outside = at;
+      m.sample = here;
+      asked = 0;
+    }
+    // Outside for this cube: out of its sight, if the inside begins again behind the surface, or through it.
+    asked |= 1U << static_cast<unsigned>(m.cube);
+    const bool ask = asks < options.switches && (options.ask_always || m.sample.plane.w > 0.0F);
+    const int other = ask ? next_cube(maps, m.outside.v, m.outside.l, home, asked) : -1;
+    ++asks;
+    if (other >= 0) {
+      m.cube = other;
+      continue;
+    }
+    m.cube = home;
+    asks = 0;
+    // A ray that heads inwards is only beneath the sampled surface, not through it.
+    m.found = glm::dot(h, glm::vec3(m.sample.plane)) > 0.0F;
+    if (!m.found) m.t += options.min_step;
+  }
+  return m;
+}
+
+/// The place along the ray where it meets the tangent plane through S = O + d·v with the normal N; or half-way between
+/// `inside` and `outside`, where the plane leads out of that interval by more than rounding may.
+inline float corrected(const glm::vec3& s, const glm::vec3& normal, const glm::vec3& p, const glm::vec3& h, float t,
+                       float inside, float outside, float rounding) {
+  const float slope = glm::dot(h, normal);
+  const float next = slope > 1e-6F ? t + glm::dot(s - (p + t * h), normal) / slope : kFar;
+  const bool near = next >= inside - rounding && next <= outside + rounding;
+  return near ? std::clamp(next, inside, outside) : 0.5F * (inside + std::min(outside, t));
+}
+
 /// Follows the ray p + t·h (h unit) from a surface point with outward unit normal `normal` through the inside, starting
 /// in `cube`.
 template <class Maps>
 Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, const glm::vec3& h, int cube,
                const SearchOptions& options) {
-  // Step 4 of the paper's listing: cone C clears the way, if the ray lies in it (after total reflection it may not).
-  float t = options.min_step;
-  if (-glm::dot(h, normal) >= options.cosine_c - 1e-4F) {
-    const CubeSample s = maps.fetch(cube, p - maps.center(cube));
-    t = std::max(t, s.bounds.w);
+  const March m = march(maps, p, h, cube, first_step(maps, p, normal, h, cube, options), options);
+  float t = m.t, inside = m.inside, outside = m.found ? m.t : kFar;
+  glm::vec3 v = m.outside.v;
+  CubeSample sample = m.sample;
+  const auto surface = [&] { return maps.center(m.cube) + sample.bounds.x * v; };  // S
+  // Where the bound stopped the march, one fetch tells the surface point ahead.
+  const int fetches = m.found ? options.refine : 1;
+  for (int k = 0; k < fetches; ++k) {
+    if (m.found) t = corrected(surface(), glm::vec3(sample.plane), p, h, t, inside, outside, 0.01F * options.min_step);
+    const PlaceInCube at = place_in_cube(maps, m.cube, p + t * h);
+    v = at.v;
+    sample = maps.fetch(m.cube, v);
+    (at.l < sample.bounds.x ? inside : outside) = t;
   }
   Exit exit;
-  float inside = 0, outside = kFar;
-  glm::vec3 v(0.0F);
-  CubeSample s;
-  bool found = false;
-  int home = cube, asks = 0;  // who had the point outside, and how many others were asked since
-  float l_home = 0;
-  std::uint32_t asked = 0;
-  while (!found && (exit.steps < options.iterations || asks > 0)) {
-    const glm::vec3 w = p + t * h - maps.center(cube);
-    const float l = std::max(glm::length(w), 1e-20F), sphere = maps.sphere(cube);
-    const glm::vec3 u = w / l;
-    const CubeSample here = maps.fetch(cube, u);
-    if (l < sphere || l < here.bounds.x) {
-      if (exit.steps < options.iterations) {
-        const float allowed =
-            l < sphere ? sphere * sphere_step(l / sphere, glm::dot(h, u)) : allowed_step(here, u, l, h);
-        inside = t;
-        t += std::max(allowed, options.min_step);
-        ++exit.steps;
-      }
-      home = cube;
-      asks = 0;
-      continue;
-    }
-    if (asks == 0) {
-      ++exit.steps;
-      v = u;
-      s = here;
-      l_home = l;
-      asked = 0;
-    }
-    // Outside for this cube: out of its sight, if the inside begins again behind the surface, or through it.
-    asked |= 1U << static_cast<unsigned>(cube);
-    const bool ask = asks < options.switches && (options.ask_always || s.plane.w > 0.0F);
-    const int other = ask ? next_cube(maps, v, l_home, home, asked) : -1;
-    ++asks;
-    if (other >= 0) {
-      cube = other;
-      continue;
-    }
-    cube = home;
-    asks = 0;
-    // A ray that heads inwards is only beneath the sampled surface, not through it.
-    found = glm::dot(h, glm::vec3(s.plane)) > 0.0F;
-    if (found)
-      outside = t;
-    else
-      t += options.min_step;
-  }
-
-  exit.bounded = !found;
-  // Where the bound stopped the march, one fetch tells the surface point ahead.
-  const int corrections = found ? options.refine : 1;
-  for (int k = 0; k < corrections; ++k) {
-    if (found) {
-      // To the tangent plane at S, or half-way where that leads out of the known interval by more than rounding may.
-      const glm::vec3 n(s.plane);
-      const float slope = glm::dot(h, n);
-      const glm::vec3 to_s = maps.center(cube) + s.bounds.x * v - (p + t * h);
-      const float next = slope > 1e-6F ? t + glm::dot(to_s, n) / slope : kFar;
-      const float rounding = 0.01F * options.min_step;
-      const bool near = next >= inside - rounding && next <= outside + rounding;
-      t = near ? std::clamp(next, inside, outside) : 0.5F * (inside + std::min(outside, t));
-    }
-    const glm::vec3 w = p + t * h - maps.center(cube);
-    const float l = std::max(glm::length(w), 1e-20F);
-    v = w / l;
-    s = maps.fetch(cube, v);
-    (l < s.bounds.x ? inside : outside) = t;
-  }
-  const bool on_ray = found && options.refine > 0;
-  exit.point = on_ray ? p + t * h : maps.center(cube) + s.bounds.x * v;
+  exit.point = m.found && options.refine > 0 ? p + t * h : surface();
+  exit.normal = glm::normalize(glm::vec3(sample.plane));
   exit.length = t;
-  exit.cube = cube;
-  exit.normal = glm::normalize(glm::vec3(s.plane));
+  exit.steps = m.steps;
+  exit.cube = m.cube;
+  exit.bounded = !m.found;
   return exit;
 }
 
