@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "algorithms/scattering/transfer_fit.hpp"
@@ -17,6 +18,7 @@ struct TransferTable {
 
   /// Throws InputError for a medium out of range. Takes some tens of milliseconds.
   TransferTable(const SlabMedium&, TransferModel);
+  explicit TransferTable(std::vector<TransferFit> known) : entries(std::move(known)) {}
   /// Interpolated linearly, as a texture would be; `depth` ≥ 0.
   TransferFit at(double depth) const;
 };

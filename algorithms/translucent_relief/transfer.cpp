@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "algorithms/scattering/transfer_table.hpp"
+#include "algorithms/raster/transfer_cache.hpp"
+#include "algorithms/scene/files/cache_file.hpp"
 
 namespace pellucid::translucent_relief {
 
@@ -18,8 +19,9 @@ void Transfer::update(const Relief& relief) {
   for (int c = 0; c < 3; ++c) {
     const double extinction = static_cast<double>(relief.scattering[c]) + static_cast<double>(relief.absorption[c]);
     const double albedo = extinction > 0.0 ? static_cast<double>(relief.scattering[c]) / extinction : 0.0;
-    const scattering::TransferTable table({static_cast<double>(relief.anisotropy), albedo},
-                                          scattering::TransferModel::unscattered);
+    const scattering::TransferTable table =
+        transfer_table({static_cast<double>(relief.anisotropy), albedo}, scattering::TransferModel::unscattered,
+                       cache_folder("transfer_functions"));
     for (std::size_t i = 0; i < kEntries; ++i) {
       const scattering::TransferFit& fit = table.entries[i];
       float* texel = &texels[4 * (static_cast<std::size_t>(c) * kEntries + i)];
