@@ -1,5 +1,7 @@
 // The cube maps of a geocube: each face a layer of an array with a border of its neighbours' texels, so that bilinear
 // fetches join across the cube's edges. C++ twin: CubeMaps in search.hpp.
+#include "algorithms/shaders/cube_point.glsl"
+
 layout(binding = 1) uniform sampler2DArray cube_bounds;  // d, cos A, cos B, R_C
 layout(binding = 2) uniform sampler2DArray cube_planes;  // N; inner distance, or of a single layer whether more is behind
 uniform vec4 cube_spheres[16];                           // centre, and radius of sphere D
@@ -10,14 +12,6 @@ struct CubeSample {
   vec4 bounds;
   vec4 plane;  // N is not unit
 };
-
-// s, t in [-1, 1] and the face, as OpenGL numbers them.
-vec3 cube_point(vec3 d) {
-  vec3 a = abs(d);
-  if (a.x >= a.y && a.x >= a.z) return vec3((d.x >= 0.0 ? -d.z : d.z) / a.x, -d.y / a.x, d.x >= 0.0 ? 0.0 : 1.0);
-  if (a.y >= a.z) return vec3(d.x / a.y, (d.y >= 0.0 ? d.z : -d.z) / a.y, d.y >= 0.0 ? 2.0 : 3.0);
-  return vec3((d.z >= 0.0 ? d.x : -d.x) / a.z, -d.y / a.z, d.z >= 0.0 ? 4.0 : 5.0);
-}
 
 vec3 cube_coordinates(int cube, vec3 direction) {
   vec3 p = cube_point(direction);

@@ -35,8 +35,8 @@ void GlassPass::prepare(const Scene& scene) {
 void GlassPass::draw_entries(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
                              gl::PassTimer& timer) {
   refresh(scene);
-  compile(forward.environment_defines(),
-          parameters_.transfer != Transfer::none ? Translucency::defines(scene) : gl::Defines{});
+  const auto settings = translucency_settings(parameters_.transfer);
+  compile(forward.environment_defines(), settings ? Translucency::defines(scene, settings->model) : gl::Defines{});
   {
     auto pass = timer.pass("opaque");
     target.framebuffer.bind();
@@ -82,7 +82,7 @@ FetchCounts GlassPass::count_fetches(const Scene& scene, const Camera& camera, c
   if (parameters_.functions != Functions::evaluated || parameters_.stage != SearchStage::fragment ||
       parameters_.layers > 1)
     throw InputError("bench: the bare shader of geocube is of functions = evaluated, stage = fragment and layers = 1");
-  if (parameters_.transfer != Transfer::none && !Translucency::defines(scene).empty())
+  if (parameters_.transfer != Transfer::none && scatters(scene))
     throw InputError(
         "bench: the bare shader of geocube does not count what a scattering medium fetches: transfer = none");
   gl::Defines defines = defines_;

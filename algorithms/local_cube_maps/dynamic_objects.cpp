@@ -245,7 +245,7 @@ const gl::Program& DynamicObjects::program(const Scene& scene, SurfaceKind kind,
                                            const LookupSettings& lookup) {
   gl::Defines wanted = defines(kind, lookup);
   if (use != Use::report && kind == SurfaceKind::dielectric && lookup.bounces > 1 && lookup.translucency) {
-    const gl::Defines medium = Translucency::defines(scene);
+    const gl::Defines medium = Translucency::defines(scene, lookup.translucency->model);
     wanted.insert(wanted.end(), medium.begin(), medium.end());
   }
   if (use == Use::cube) {

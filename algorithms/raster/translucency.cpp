@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
-#include <glm/gtc/packing.hpp>
-
+#include "algorithms/key_maps/key_atlas.hpp"
 #include "algorithms/progress.hpp"
+#include "algorithms/raster/transfer_cache.hpp"
 #include "algorithms/scene/files/cache_file.hpp"
-#include "gl/cube_faces.hpp"
 
 namespace pellucid {
 namespace {
 
 using namespace scattering;
-
-bool any_scatters(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.scatters(); });
-}
 
 bool grey(const Material& m) {
   const auto same = [](const glm::vec3& v) { return v.x == v.y && v.y == v.z; };
@@ -42,6 +36,10 @@ constexpr int kTables = 8;  // media that are kept, as a slider passes them
 
 }  // namespace
 
+bool scatters(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.scatters(); });
+}
+
 std::optional<TranslucencySettings> translucency_settings(Transfer transfer, const KeyChainOptions& chain,
                                                           float widening) {
   if (transfer == Transfer::none) return std::nullopt;
@@ -53,15 +51,18 @@ void Translucency::prepare(const Scene& scene, const TranslucencySettings& setti
   settings_ = settings;
   chain_ = {};
   tables_.clear();
-  if (any_scatters(scene)) refresh(scene);
+  if (scatters(scene)) refresh(scene);
 }
 
-gl::Defines Translucency::defines(const Scene& scene) {
-  if (!any_scatters(scene)) return {};
-  gl::Defines defines{{"SCATTERING", "1"}};
+gl::Defines Translucency::defines(const Scene& scene, TransferModel model) {
+  if (!scatters(scene)) return {};
+  gl::Defines defines;
+  defines.emplace_back("SCATTERING", "1");
   if (std::any_of(scene.materials.begin(), scene.materials.end(),
                   [](const Material& m) { return m.scatters() && !grey(m); }))
     defines.emplace_back("COLOURED_MEDIUM", "1");
+  if (model == TransferModel::unscattered) defines.emplace_back("UNSCATTERED_APART", "1");
+  if (model == TransferModel::two_gaussians) defines.emplace_back("TWO_GAUSSIANS", "1");
   return defines;
 }
 
@@ -73,20 +74,12 @@ void Translucency::refresh(const Scene& scene) {
   if (!environment.image) options.face_size = kLeastFace;  // a gradient has no details
   const KeyChain chain = key_chain(environment, options, environment.image ? cache_folder("key_maps") : "",
                                    [](double share) { tell_progress("filtering the environment", share); });
-  chain_ = gl::Texture::make_cube("key maps", gl::Format::rgba16f, options.face_size / 2, chain.widths.levels());
-  for (std::size_t level = 0; level < chain.half_rgb.size(); ++level) {
-    const std::vector<std::uint16_t>& half = chain.half_rgb[level];
-    std::vector<float> face(half.size() / 3 * 4 / gl::kCubeFaces, 1.0F);
-    for (int f = 0; f < gl::kCubeFaces; ++f) {
-      const std::size_t first = static_cast<std::size_t>(f) * face.size() / 4 * 3;
-      for (std::size_t i = 0; i < face.size() / 4; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-          face[4 * i + c] = glm::unpackHalf1x16(half[first + 3 * i + c]);
-      }
-      chain_.upload_layer(f, face, static_cast<int>(level));
-    }
-  }
-  chain_.set_sampling(gl::Filter::mipmap, gl::Wrap::clamp);
+  const KeyAtlas atlas = key_atlas(chain);
+  chain_ = gl::Texture::make_2d("key maps", gl::Format::rgba16f, atlas.width, atlas.height);
+  chain_.upload(atlas.rgba);
+  chain_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
+  map_size_ = atlas.map_size;
+  face_rows_ = atlas.face_rows;
   widths_ = chain.widths;
   chain_scale_ = chain.scale;
   mean_ = chain.mean;
@@ -113,8 +106,9 @@ const gl::Texture& Translucency::table_of(const Material& material) {
       }
       continue;
     }
-    const TransferTable table({static_cast<double>(material.anisotropy), static_cast<double>(albedo[c])},
-                              settings_.model);
+    const TransferTable table =
+        transfer_table({static_cast<double>(material.anisotropy), static_cast<double>(albedo[c])}, settings_.model,
+                       cache_folder("transfer_functions"));
     for (int i = 0; i < kEntries; ++i) {
       const TransferFit& fit = table.entries[static_cast<std::size_t>(i)];
       const double one[] = {widths_.level(settings_.widening * fit.theta_bar), fit.f_t, fit.c_t, fit.c_r};
@@ -132,14 +126,15 @@ const gl::Texture& Translucency::table_of(const Material& material) {
 }
 
 void Translucency::bind(const gl::Program& program, const Scene& scene, const Material& material) {
-  if (!any_scatters(scene)) return;
+  if (!scatters(scene)) return;
   refresh(scene);
   chain_.bind(11);
   table_of(material).bind(12);
   program.set("extinction", material.scattering + material.absorption);
+  program.set("key_map_size", map_size_);
+  program.set("key_face_rows", face_rows_);
   program.set("key_scale", chain_scale_ * scene.environment.scale);
   program.set("mean_radiance", mean_ * scene.environment.scale);
-  program.set("transfer_model", static_cast<int>(settings_.model));
 }
 
 std::size_t Translucency::bytes() const {

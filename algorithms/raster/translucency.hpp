@@ -14,8 +14,7 @@
 #include "gl/program.hpp"
 
 /// Translucency as Chan and Wang 2005, Sec. 3 (references.bib: chan2005) have it, for any technique that knows how long
-/// a ray is inside: shaders/translucency.glsl reads a mip chain of blurred environments and a table of transfer
-/// functions.
+/// a ray is inside: shaders/translucency.glsl reads a chain of blurred environments and a table of transfer functions.
 namespace pellucid {
 
 /// The meaning of a technique's parameter `transfer`: nothing, so that a medium acts by its absorption alone, or a
@@ -32,6 +31,9 @@ struct TranslucencySettings {
 std::optional<TranslucencySettings> translucency_settings(Transfer, const scattering::KeyChainOptions& = {},
                                                           float widening = 1);
 
+/// Whether any material of the scene does.
+bool scatters(const Scene&);
+
 /// The textures. A context must be current for every call.
 class Translucency {
  public:
@@ -40,11 +42,11 @@ class Translucency {
   void prepare(const Scene&, const TranslucencySettings&);
   /// The defines with which a program that includes translucency.glsl must be compiled; empty where no material
   /// scatters.
-  static gl::Defines defines(const Scene&);
+  static gl::Defines defines(const Scene&, scattering::TransferModel);
   /// Sets what translucency.glsl reads for one material, which scatters or not: textures to the units 11 and 12.
   void bind(const gl::Program&, const Scene&, const Material&);
 
-  std::size_t bytes() const;  ///< of the mip chain
+  std::size_t bytes() const;  ///< of the chain, borders included
   std::size_t full_resolution_bytes() const { return full_bytes_; }
   double filter_s() const { return filter_s_; }  ///< of the run that filled the cache, if it was cached
 
@@ -57,6 +59,7 @@ class Translucency {
   scattering::KeyWidths widths_{2, 0.02};
   Environment filtered_;  // what the chain is of; without its image
   gl::Texture chain_;
+  int map_size_ = 0, face_rows_ = 0;  // as KeyAtlas has them
   float chain_scale_ = 1;
   glm::vec3 mean_{0.0F};
   std::size_t full_bytes_ = 0;
