@@ -10,7 +10,8 @@
 namespace pellucid::geocube {
 namespace {
 
-constexpr double kNone = -2;        // below any cosine
+constexpr double kNone = -2;  // below any cosine
+constexpr std::size_t kNowhere = ~std::size_t{0};
 constexpr float kRounding = 1e-6F;  // of single precision in some sums, as a share of the numbers' size
 
 /// The patches of a cell's quarters.
@@ -95,6 +96,28 @@ double search(const PatchTree& tree, EmptyCone cone, double best, std::size_t& f
   return best;
 }
 
+// From a texel to the neighbour on its face that scores most, and on, for as long as one scores more. The cones of
+// neighbouring texels touch the surface in neighbouring texels, so that a search which begins there has little left to
+// do.
+template <class Score>
+double climb(int n, std::size_t& texel, Score score) {
+  double best = score(texel);
+  for (std::size_t from = kNowhere; from != texel;) {
+    from = texel;
+    const auto size = static_cast<std::size_t>(n), x = from % size, y = from / size % size;
+    for (std::size_t k = 0; k < 9; ++k) {
+      const std::size_t column = x + k % 3, row = y + k / 3;  // one more than the neighbour's
+      if (k == 4 || column < 1 || column > size || row < 1 || row > size) continue;
+      const std::size_t to = from + (row - 1) * size + column - 1 - y * size - x;
+      const double value = score(to);
+      if (value <= best) continue;
+      best = value;
+      texel = to;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 double cone_a_cosine(const ConeA& cone, const std::vector<const SheetTree*>& trees, std::size_t& hint) {
@@ -107,7 +130,7 @@ double cone_a_cosine(const ConeA& cone, const std::vector<const SheetTree*>& tre
   };
   double best = 0;
   for (const SheetTree* surface : trees)
-    best = std::max(best, score_in(surface->sheet, hint));
+    best = std::max(best, climb(surface->tree.n(), hint, [&](std::size_t at) { return score_in(surface->sheet, at); }));
   const EmptyCone empty{.axis = glm::vec3(cone.axis), .apex = static_cast<float>(glm::dot(cone.apex, cone.axis))};
   const auto height = static_cast<float>(cone.height);
   for (const SheetTree* surface : trees) {

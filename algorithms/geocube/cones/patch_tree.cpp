@@ -95,7 +95,7 @@ void set(Quarters& quarters, std::size_t k, const Patch& patch) {
 
 }  // namespace
 
-PatchTree::PatchTree(const CubeGrid& grid, const Sheet& sheet) {
+PatchTree::PatchTree(const CubeGrid& grid, const Sheet& sheet) : n_(grid.n()) {
   assert(grid.n() > 1);
   std::uint32_t below = 0;  // the first cell of the level below
   for (int size = 2, width = grid.n(); width > 1; size *= 2) {

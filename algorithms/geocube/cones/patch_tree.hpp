@@ -38,6 +38,7 @@ class PatchTree {
   /// The grid has at least two texels along an edge.
   PatchTree(const CubeGrid& grid, const Sheet& sheet);
 
+  int n() const { return n_; }  ///< texels along a face's edge
   /// One for each face.
   const std::array<std::uint32_t, 6>& roots() const { return roots_; }
   const Quarters& quarters(std::uint32_t cell) const { return cells_[cell]; }
@@ -45,6 +46,7 @@ class PatchTree {
   bool lowest(std::uint32_t cell) const { return cell < lowest_; }
 
  private:
+  int n_ = 0;
   std::vector<Quarters> cells_;  // by level from the lowest up, face, row
   std::array<std::uint32_t, 6> roots_{};
   std::uint32_t lowest_ = 0;

@@ -98,11 +98,14 @@ struct CoarseCone {
   }
 
   // A lower bound of the distance from the apex to the points of each box in the cone; infinite when there are none.
-  Four distance(const Seen& seen) const {
+  // Where none of the four is below `of_interest` the bound may be a lower one, no less than that.
+  Four distance(const Seen& seen, float of_interest) const {
     const Four box = seen.distance_to_box();
     const Span span = between_planes(seen);
     Four result = stdx::max(box, span.begin);
-    stdx::where(box > span.end || misses(seen), result) = kFarAway;
+    stdx::where(box > span.end, result) = kFarAway;
+    if (stdx::all_of(result >= of_interest)) return result;
+    stdx::where(misses(seen), result) = kFarAway;
     return result;
   }
 };
@@ -249,7 +252,11 @@ Nearest TriangleTree::nearest_in_cone(const Cone& cone, std::uint32_t own, std::
   if (hint != kNoTriangle && hint != own) best = {distance_in_cone(cone, corners(hint)), hint};
   const CoarseCone coarse(cone);
   nearest_first(
-      best, [&](const Node& node) { return coarse.distance(Seen(node, coarse.apex)); },
+      best,
+      [&](const Node& node) {
+        // Above what nearest_first() would still look at, rounding included.
+        return coarse.distance(Seen(node, coarse.apex), static_cast<float>(best.distance * (1 + 2e-6)));
+      },
       [&](std::uint32_t triangle, double below) {
         return triangle == own ? kUnbounded : distance_in_cone(cone, corners(triangle), below);
       });
