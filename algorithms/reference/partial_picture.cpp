@@ -1,5 +1,6 @@
 #include "algorithms/reference/partial_picture.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -15,7 +16,8 @@ namespace {
 
 /// Raise it when what is traced or how it is written changes.
 constexpr int kVersion = 1;
-constexpr double kWriteEvery_s = 10, kWorthKeeping_s = 2;
+constexpr double kWorthKeeping_s = 2;
+constexpr double kShareForWriting = 0.02;  // of the time, once a picture is worth keeping
 
 std::string key_of(const std::string& scene_hash, const Camera& camera, const SurfaceOptions& o) {
   const auto words = [](const glm::vec3& v) { return fmt::format("{} {} {} ", v.x, v.y, v.z); };
@@ -64,8 +66,8 @@ void PartialPicture::advance(bool done) {
   const auto now = std::chrono::steady_clock::now();
   trace_s += seconds_between(last_, now);
   last_ = now;
-  if (file_.path.empty() || !(done ? trace_s >= kWorthKeeping_s : seconds_between(written_, now) >= kWriteEvery_s))
-    return;
+  if (file_.path.empty() || trace_s < kWorthKeeping_s) return;
+  if (!done && seconds_between(written_, now) < std::max(kWorthKeeping_s, write_s_ / kShareForWriting)) return;
   ByteWriter out;
   out.add(samples);
   out.add(trace_s);
@@ -73,6 +75,7 @@ void PartialPicture::advance(bool done) {
   out.add(pixels);
   file_.keep(out.bytes());
   written_ = last_ = std::chrono::steady_clock::now();
+  write_s_ = seconds_between(now, written_);
 }
 
 }  // namespace pellucid

@@ -61,6 +61,7 @@ class PartialPicture {
  private:
   CacheFile file_;  // without a path: nothing is kept
   std::chrono::steady_clock::time_point last_, written_;
+  double write_s_ = 0;  // what the last writing took
 };
 
 }  // namespace pellucid
