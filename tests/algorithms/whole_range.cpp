@@ -62,10 +62,18 @@ TEST_P(WholeRange, EveryValueIsDrawn) {
     EXPECT_EQ(to_text(own.get(p.name)), to_text(value)) << p.name;
     session.assign(p.name, value);
   };
-  // Dear work stays small while another parameter is tried.
-  const auto small = [](const ParameterInfo& p) -> Value {
-    const bool dear = p.when == Change::precompute && p.type == ValueType::integer;
-    return dear ? Value(static_cast<std::int64_t>(p.min)) : p.default_value;
+  // Dear work stays small while another parameter is tried: its numbers are the least, and while one of them is the
+  // greatest its kind is the first choice, which is the plainest.
+  const auto dear = [](const ParameterInfo& p, ValueType type) {
+    return p.when == Change::precompute && p.type == type;
+  };
+  const auto small = [&](const ParameterInfo& p) -> Value {
+    return dear(p, ValueType::integer) ? Value(static_cast<std::int64_t>(p.min)) : p.default_value;
+  };
+  const auto choose_plainest = [&](bool plainest) {
+    for (const ParameterInfo& p : parameters) {
+      if (dear(p, ValueType::choice)) assign(p, plainest ? Value(std::string(p.choices.front())) : p.default_value);
+    }
   };
   for (const ParameterInfo& p : parameters)
     assign(p, small(p));
@@ -73,6 +81,9 @@ TEST_P(WholeRange, EveryValueIsDrawn) {
     EXPECT_NE(p.doc, "") << p.name;
     EXPECT_NE(p.cite, "") << p.name;
     for (const Value& value : ends_and_default(p)) {
+      const bool greatest =
+          dear(p, ValueType::integer) && to_text(value) == to_text(Value(static_cast<std::int64_t>(p.max)));
+      if (greatest) choose_plainest(true);
       assign(p, value);
       gl::PassTimer timer;
       try {
@@ -84,6 +95,7 @@ TEST_P(WholeRange, EveryValueIsDrawn) {
       }
       EXPECT_EQ(test::not_finite(session.read_color()), 0) << p.name << " = " << to_text(value);
     }
+    if (dear(p, ValueType::integer)) choose_plainest(false);
     assign(p, small(p));
   }
 }
