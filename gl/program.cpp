@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <functional>
 
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
@@ -105,11 +106,35 @@ std::string explain_link_log(const std::string& log, const std::vector<StageSour
   return out;
 }
 
-GLuint build(const std::string& label, const std::vector<Stage>& names, const Defines& defines) {
+void append(ExpandedSource& source, const std::string& text) {
+  if (text.empty()) return;
+  const int file = static_cast<int>(source.files.size());
+  source.files.emplace_back("generated text");
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    source.text.append(text, at, end - at);
+    source.text += '\n';
+    source.lines.push_back({.file = file, .line = ++number});
+    at = end + 1;
+  }
+}
+
+std::vector<StageSource> sources_of(const std::vector<Stage>& names, const Defines& defines,
+                                    const std::string& generated) {
+  assert(!names.empty());
   std::vector<StageSource> stages;
   for (const Stage& name : names)
     stages.push_back({.type = stage_kind(name).type, .source = expand_includes(name, defines)});
-  return link_program(label, stages);
+  append(stages.back().source, generated);
+  return stages;
+}
+
+std::size_t hash_of(const std::vector<StageSource>& stages) {
+  std::string all;
+  for (const StageSource& stage : stages)
+    all += stage.source.text + '\0';
+  return std::hash<std::string>{}(all);
 }
 
 }  // namespace
@@ -148,9 +173,14 @@ void delete_program(GLuint id) {
   if (detail::has_current()) glDeleteProgram(id);
 }
 
-Program::Program(std::string label, std::vector<Stage> stages, Defines defines)
-    : label_(std::move(label)), stages_(std::move(stages)), defines_(std::move(defines)) {
-  handle_ = Handle<delete_program>(build(label_, stages_, defines_));
+Program::Program(std::string label, std::vector<Stage> stages, Defines defines, std::string generated)
+    : label_(std::move(label)),
+      stages_(std::move(stages)),
+      defines_(std::move(defines)),
+      generated_(std::move(generated)) {
+  const std::vector<StageSource> sources = sources_of(stages_, defines_, generated_);
+  handle_ = Handle<delete_program>(link_program(label_, sources));
+  built_from_ = hash_of(sources);
 }
 
 Program::~Program() = default;
@@ -165,6 +195,8 @@ Program& Program::operator=(Program&& other) noexcept {
   label_ = std::exchange(other.label_, {});
   stages_ = std::exchange(other.stages_, {});
   defines_ = std::exchange(other.defines_, {});
+  generated_ = std::exchange(other.generated_, {});
+  built_from_ = std::exchange(other.built_from_, 0);
   locations_ = std::exchange(other.locations_, {});
   return *this;
 }
@@ -178,7 +210,12 @@ void Program::use() const {
 std::string Program::reload() {
   assert(!stages_.empty() && "an empty program has no sources");
   try {
-    handle_ = Handle<delete_program>(build(label_, stages_, defines_));
+    const std::vector<StageSource> sources = sources_of(stages_, defines_, generated_);
+    // Saving one file asks every program; most have not changed, and compiling them would hold up those that have.
+    const std::size_t hash = hash_of(sources);
+    if (hash == built_from_) return {};
+    handle_ = Handle<delete_program>(link_program(label_, sources));
+    built_from_ = hash;
     locations_.clear();
     return {};
   } catch (const RuntimeError& error) {

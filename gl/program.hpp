@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -43,13 +44,15 @@ std::string explain_log(std::string_view log, const ExpandedSource& source);
 
 /// A linked program. A compile or link error throws RuntimeError with "file:line: message" and the source line, with
 /// includes resolved. `reload()` compiles from the current sources and keeps the last good program when that fails.
+/// `generated` is text that no file holds, put behind the last stage's.
 class Program {
  public:
   Program() = default;
-  Program(std::string label, std::vector<Stage> stages, Defines defines = {});
+  Program(std::string label, std::vector<Stage> stages, Defines defines = {}, std::string generated = {});
 
   void use() const;
-  /// Compiles again; on failure keeps the program that works and returns the error's text, else an empty string.
+  /// Compiles again where the sources are others than before; on failure keeps the program that works and returns the
+  /// error's text, else an empty string.
   std::string reload();
 
   // Uniforms by name; a name that the linker removed is ignored, as GL does.
@@ -77,6 +80,8 @@ class Program {
   std::string label_;
   std::vector<Stage> stages_;
   Defines defines_;
+  std::string generated_;
+  std::size_t built_from_ = 0;  // a hash of the sources
   mutable std::unordered_map<std::string, GLint> locations_;
 };
 

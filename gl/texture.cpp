@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -89,6 +91,27 @@ struct Size {
 Size size_of_level(GLenum target, int width, int height, int depth, int level) {
   return {level_size(width, level), level_size(height, level),
           target == GL_TEXTURE_3D ? level_size(depth, level) : depth};
+}
+
+// GL pads rows to four bytes, which one channel of halves need not fill.
+bool read_as_halves(Format format) {
+  return format == Format::rg16f || format == Format::rgba16f;
+}
+
+// Half to single precision (IEEE 754), exact for every value; NaNs keep their payload.
+float single_from_half(std::uint16_t half) {
+  constexpr std::uint32_t kLeastNormal = 113U << 23;  // 2^-14, half's least normal number
+  const std::uint32_t sign = static_cast<std::uint32_t>(half & 0x8000U) << 16;
+  const std::uint32_t rest = static_cast<std::uint32_t>(half & 0x7fffU) << 13;
+  const std::uint32_t exponent = rest & (0x1fU << 23);
+  std::uint32_t out = rest + (112U << 23);
+  if (exponent == 0x1fU << 23) {
+    out += 112U << 23;  // infinities and NaNs
+  } else if (exponent == 0) {
+    // A subnormal number: its mantissa behind a leading one, less that one.
+    out = std::bit_cast<std::uint32_t>(std::bit_cast<float>(rest + kLeastNormal) - std::bit_cast<float>(kLeastNormal));
+  }
+  return std::bit_cast<float>(out | sign);
 }
 
 // GL would report a texture that is too large as GL_INVALID_VALUE; say what is too large, and how much is allowed.
@@ -241,14 +264,20 @@ std::vector<float> Texture::read(int level) const {
   const int rows = static_cast<int>(std::min(static_cast<std::size_t>(size.height), most_rows));
   const int layers = std::max(1, static_cast<int>(std::min(static_cast<std::size_t>(size.depth),
                                                            most_rows / static_cast<std::size_t>(size.height))));
+  // Drivers convert slowly: halves are fetched as they are.
+  const bool half = read_as_halves(format_);
+  std::vector<std::uint16_t> halves;
   std::size_t at = 0;
   for (int z = 0; z < size.depth; z += layers) {
     const int nz = std::min(layers, size.depth - z);
     for (int y = 0; y < size.height; y += rows) {
       const int ny = std::min(rows, size.height - y);
       const std::size_t count = row * static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz);
-      glGetTextureSubImage(id(), level, 0, y, z, size.width, ny, nz, t.pixel, t.component,
-                           static_cast<GLsizei>(count * sizeof(float)), texels.data() + at);
+      if (half) halves.resize(count);
+      void* out = half ? static_cast<void*>(halves.data()) : texels.data() + at;
+      glGetTextureSubImage(id(), level, 0, y, z, size.width, ny, nz, t.pixel, half ? GL_HALF_FLOAT : t.component,
+                           static_cast<GLsizei>(count * (half ? sizeof(std::uint16_t) : sizeof(float))), out);
+      std::transform(halves.begin(), halves.end(), texels.begin() + static_cast<std::ptrdiff_t>(at), single_from_half);
       at += count;
     }
   }

@@ -173,7 +173,12 @@ struct DisplayTransform::State {
   std::string display, view, look;
   OCIO::ConstProcessorRcPtr processor;
   OCIO::ConstCPUProcessorRcPtr cpu;
-  std::optional<DisplayProgram> gpu;  // made by the first draw: writing a PNG needs no GL
+  std::optional<DisplayFunction> gpu;  // made by the first drawing: writing a PNG needs no GL
+
+  DisplayFunction& function() {
+    if (!gpu) gpu.emplace(processor->getOptimizedGPUProcessor(kOptimization));
+    return *gpu;
+  }
 };
 
 DisplayTransform::DisplayTransform(const std::string& display, const std::string& view, const std::string& look)
@@ -213,8 +218,18 @@ void DisplayTransform::apply(std::span<float> pixels, int channels) const {
 
 void DisplayTransform::draw(const Texture& source, float exposure_ev) const {
   assert(state_ != nullptr);
-  if (!state_->gpu) state_->gpu.emplace(state_->processor->getOptimizedGPUProcessor(kOptimization));
-  state_->gpu->draw(source, std::exp2(exposure_ev));
+  state_->function().draw(source, std::exp2(exposure_ev));
+}
+
+Program DisplayTransform::program(const std::string& label, const Stage& vertex, const Stage& fragment,
+                                  const Defines& defines) const {
+  assert(state_ != nullptr);
+  return state_->function().program(label, vertex, fragment, defines);
+}
+
+void DisplayTransform::bind_luts() const {
+  assert(state_ != nullptr);
+  state_->function().bind_luts();
 }
 
 const std::string& DisplayTransform::display() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gl/objects.hpp"
+#include "gl/program.hpp"
 
 namespace pellucid::gl {
 
@@ -19,7 +20,8 @@ namespace pellucid::gl {
 /// name, else through the role `aces_interchange`, else `scene_linear` is taken to be Rec. 709.
 ///
 /// The same transform runs on the CPU (PNG output) and on the GPU (viewer) and agrees to 1e-4 of 1, or of the value
-/// where that is larger. Only draw() needs a GL context, and keeps its program and LUTs in the first one it ran in.
+/// where that is larger. Only what
+/// draws needs a GL context, and keeps its program and LUTs in the first one it ran in.
 class DisplayTransform {
  public:
   /// Without names, the config's default display and view, and no look beside those that the view has. An unreadable or
@@ -36,6 +38,12 @@ class DisplayTransform {
   /// Draws `source` (scene-linear RGB) times 2^exposure_ev as a full-screen triangle into the bound framebuffer, with
   /// alpha 1; depth test, blending, culling and scissor are off meanwhile.
   void draw(const Texture& source, float exposure_ev) const;
+
+  /// A program that shows pictures its own way: `fragment` calls `vec4 ocio_display(vec4 scene_linear)`, whose text is
+  /// put behind it, and includes "gl/display/lut_sampling.glsl" at its end. Units from 4 on are the LUTs'; bind_luts()
+  /// binds them.
+  Program program(const std::string& label, const Stage& vertex, const Stage& fragment, const Defines& = {}) const;
+  void bind_luts() const;
 
   const std::string& display() const;
   const std::string& view() const;

@@ -10,7 +10,6 @@
 
 #include "gl/context.hpp"
 #include "gl/label.hpp"
-#include "gl/link.hpp"
 
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -18,18 +17,8 @@ namespace pellucid::gl {
 
 namespace {
 
-void append(ExpandedSource& source, const std::string& file, const std::string& text) {
-  const int index = static_cast<int>(source.files.size());
-  source.files.push_back(file);
-  int number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    source.text.append(text, at, end - at);
-    source.text += '\n';
-    source.lines.push_back({.file = index, .line = ++number});
-    at = end + 1;
-  }
-}
+// Units below are for the pictures that a shader reads.
+constexpr GLuint kFirstLutUnit = 4;
 
 // Full-screen drawing needs these off; the viewer's other passes keep what they had set.
 class PlainRaster {
@@ -54,8 +43,8 @@ class PlainRaster {
 
 }  // namespace
 
-DisplayProgram::Lut::Lut(std::string name, GLenum kind, GLenum internal_format, const std::array<int, 3>& size,
-                         bool smooth)
+DisplayFunction::Lut::Lut(std::string name, GLenum kind, GLenum internal_format, const std::array<int, 3>& size,
+                          bool smooth)
     : target(kind),
       bytes(sizeof(float) * static_cast<std::size_t>(internal_format == GL_R32F ? 1 : 4) *
             static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2])),
@@ -76,14 +65,14 @@ DisplayProgram::Lut::Lut(std::string name, GLenum kind, GLenum internal_format, 
   account_bytes(static_cast<std::ptrdiff_t>(bytes));
 }
 
-DisplayProgram::Lut::~Lut() {
+DisplayFunction::Lut::~Lut() {
   if (handle.id() != 0) account_bytes(-static_cast<std::ptrdiff_t>(bytes));
 }
 
-DisplayProgram::Lut::Lut(Lut&& other) noexcept
+DisplayFunction::Lut::Lut(Lut&& other) noexcept
     : handle(std::move(other.handle)), target(other.target), bytes(other.bytes), label(std::move(other.label)) {}
 
-void DisplayProgram::Lut::upload(GLenum pixel_format, const float* values, const std::array<int, 3>& size) const {
+void DisplayFunction::Lut::upload(GLenum pixel_format, const float* values, const std::array<int, 3>& size) const {
   const GLuint id = handle.id();
   if (target == GL_TEXTURE_1D) glTextureSubImage1D(id, 0, 0, size[0], pixel_format, GL_FLOAT, values);
   if (target == GL_TEXTURE_2D) glTextureSubImage2D(id, 0, 0, 0, size[0], size[1], pixel_format, GL_FLOAT, values);
@@ -92,7 +81,7 @@ void DisplayProgram::Lut::upload(GLenum pixel_format, const float* values, const
   check("upload the display transform's LUT", label);
 }
 
-DisplayProgram::DisplayProgram(const OCIO::ConstGPUProcessorRcPtr& processor) {
+DisplayFunction::DisplayFunction(const OCIO::ConstGPUProcessorRcPtr& processor) {
   OCIO::GpuShaderDescRcPtr desc = OCIO::GpuShaderDesc::CreateShaderDesc();
   desc->setLanguage(OCIO::GPU_LANGUAGE_GLSL_4_0);
   desc->setFunctionName("ocio_display");
@@ -101,7 +90,6 @@ DisplayProgram::DisplayProgram(const OCIO::ConstGPUProcessorRcPtr& processor) {
   processor->extractGpuShaderInfo(desc);
   assert(desc->getNumUniforms() == 0 && "dynamic properties are baked in");
 
-  std::vector<std::string> samplers;
   bool all_smooth = true;
   for (unsigned i = 0; i < desc->getNumTextures(); ++i) {
     const char *name = nullptr, *sampler = nullptr;
@@ -118,7 +106,7 @@ DisplayProgram::DisplayProgram(const OCIO::ConstGPUProcessorRcPtr& processor) {
     luts_.emplace_back(name, size[1] > 1 ? GL_TEXTURE_2D : GL_TEXTURE_1D, red ? GL_R32F : GL_RGBA32F, size,
                        interpolation != OCIO::INTERP_NEAREST);
     luts_.back().upload(red ? GL_RED : GL_RGB, values, size);
-    samplers.emplace_back(sampler);
+    samplers_.emplace_back(sampler);
   }
   for (unsigned i = 0; i < desc->getNum3DTextures(); ++i) {
     const char *name = nullptr, *sampler = nullptr;
@@ -131,31 +119,37 @@ DisplayProgram::DisplayProgram(const OCIO::ConstGPUProcessorRcPtr& processor) {
     all_smooth = all_smooth && interpolation != OCIO::INTERP_NEAREST;
     luts_.emplace_back(name, GL_TEXTURE_3D, GL_RGBA32F, size, interpolation != OCIO::INTERP_NEAREST);
     luts_.back().upload(GL_RGB, values, size);
-    samplers.emplace_back(sampler);
+    samplers_.emplace_back(sampler);
   }
 
-  ExpandedSource fragment = expand_includes("gl/display/display.frag.glsl", {});
   // A LUT with nearest look-up needs the texture unit's own filter.
-  if (all_smooth) append(fragment, "gl/display/display_gpu.cpp", "#define texture lut_texture\n");
-  append(fragment, "OpenColorIO's shader", desc->getShaderText());
-  program_ = Handle<delete_program>(link_program(
-      "display transform", {{.type = GL_VERTEX_SHADER, .source = expand_includes("gl/display/display.vert.glsl", {})},
-                            {.type = GL_FRAGMENT_SHADER, .source = std::move(fragment)}}));
-  gain_ = glGetUniformLocation(program_.id(), "gain");
-  for (std::size_t i = 0; i < samplers.size(); ++i)
-    glProgramUniform1i(program_.id(), glGetUniformLocation(program_.id(), samplers[i].c_str()),
-                       static_cast<GLint>(i) + 1);
-  check("set LUT units", "display transform");
-  triangle_ = VertexArray("display transform");
+  if (all_smooth) text_ = "#define texture lut_texture\n";
+  text_ += desc->getShaderText();
 }
 
-void DisplayProgram::draw(const Texture& source, float gain) const {
+Program DisplayFunction::program(const std::string& label, const Stage& vertex, const Stage& fragment,
+                                 const Defines& defines) const {
+  Program made(label, {vertex, fragment}, defines, text_);
+  for (std::size_t i = 0; i < samplers_.size(); ++i)
+    made.set(samplers_[i], static_cast<int>(kFirstLutUnit) + static_cast<int>(i));
+  return made;
+}
+
+void DisplayFunction::bind_luts() const {
+  for (std::size_t i = 0; i < luts_.size(); ++i)
+    glBindTextureUnit(kFirstLutUnit + static_cast<GLuint>(i), luts_[i].handle.id());
+}
+
+void DisplayFunction::draw(const Texture& source, float gain) {
+  if (!program_) {
+    program_ = program("display transform", "gl/display/display.vert.glsl", "gl/display/display.frag.glsl", {});
+    triangle_ = VertexArray("display transform");
+  }
   const PlainRaster plain;
   source.bind(0);
-  for (std::size_t i = 0; i < luts_.size(); ++i)
-    glBindTextureUnit(static_cast<GLuint>(i) + 1, luts_[i].handle.id());
-  glUseProgram(program_.id());
-  glProgramUniform1f(program_.id(), gain_, gain);
+  bind_luts();
+  program_.use();
+  program_.set("gain", gain);
   triangle_.bind();
   glDrawArrays(GL_TRIANGLES, 0, 3);
   check("draw", "display transform");

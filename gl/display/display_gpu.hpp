@@ -14,11 +14,13 @@ namespace pellucid::gl {
 
 /// OpenColorIO's GPU form of a processor: its generated function, and its LUTs as textures. Belongs to the GL context
 /// in which it was made.
-class DisplayProgram {
+class DisplayFunction {
  public:
-  explicit DisplayProgram(const OCIO_NAMESPACE::ConstGPUProcessorRcPtr& processor);
-  void draw(const Texture& source, float gain) const;
-  int lut_count() const { return static_cast<int>(luts_.size()); }
+  explicit DisplayFunction(const OCIO_NAMESPACE::ConstGPUProcessorRcPtr& processor);
+  /// A program whose fragment shader calls `vec4 ocio_display(vec4 scene_linear)`.
+  Program program(const std::string& label, const Stage& vertex, const Stage& fragment, const Defines&) const;
+  void bind_luts() const;
+  void draw(const Texture& source, float gain);
 
  private:
   struct Lut {
@@ -33,10 +35,11 @@ class DisplayProgram {
     std::size_t bytes;
     std::string label;
   };
-  Handle<delete_program> program_;
-  VertexArray triangle_;
+  std::string text_;
   std::vector<Lut> luts_;
-  GLint gain_ = -1;
+  std::vector<std::string> samplers_;  // of the LUTs
+  Program program_;                    // made by the first draw()
+  VertexArray triangle_;
 };
 
 }  // namespace pellucid::gl

@@ -216,6 +216,33 @@ TEST_F(ProgramTest, ReloadKeepsTheLastProgramThatWorks) {
   EXPECT_EQ(run(program, 1)[0], 2.0F);
 }
 
+TEST_F(ProgramTest, ReloadLeavesAProgramWhoseSourcesAreTheSame) {
+  ShaderTree tree;
+  const std::string head = std::string(kCompute) + "layout(std430, binding = 0) buffer R { float r; };\n";
+  tree.write("t/shared.glsl", "const float wanted = 1.0;\n");
+  tree.write("t/main.comp.glsl", head + "#include \"t/shared.glsl\"\nvoid main() { r = wanted; }\n");
+  Program program("edited", {"t/main.comp.glsl"});
+  const GLuint first = program.id();
+  tree.write("t/other.glsl", "const float other = 1.0;\n");
+  EXPECT_EQ(program.reload(), "");
+  EXPECT_EQ(program.id(), first) << "it was compiled again for nothing";
+  tree.write("t/shared.glsl", "const float wanted = 2.0;\n");
+  EXPECT_EQ(program.reload(), "");
+  EXPECT_NE(program.id(), first) << "what it includes has changed";
+  EXPECT_EQ(run(program, 1)[0], 2.0F);
+}
+
+TEST_F(ProgramTest, GeneratedTextStandsBehindTheLastStage) {
+  ShaderTree tree;
+  tree.write("t/main.comp.glsl", std::string(kCompute) + "layout(std430, binding = 0) buffer R { float r; };\n" +
+                                     "float wanted();\nvoid main() { r = wanted(); }\n");
+  Program program("half of it", {"t/main.comp.glsl"}, {}, "float wanted() { return 7.0; }\n");
+  EXPECT_EQ(run(program, 1)[0], 7.0F);
+  const std::string message = message_of<RuntimeError>(
+      [] { const Program wrong("half of it", {"t/main.comp.glsl"}, {}, "\nfloat wanted( {\n"); });
+  EXPECT_TRUE(message.starts_with("generated text:2: ")) << message;
+}
+
 TEST_F(ProgramTest, ReloadFindsUniformsAgain) {
   ShaderTree tree;
   const auto write = [&](const std::string& uniforms) {

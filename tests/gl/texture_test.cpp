@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -110,6 +111,24 @@ INSTANTIATE_TEST_SUITE_P(All, FormatTest,
                                          Format::rgba16f, Format::r32f, Format::rg32f, Format::rgba32f, Format::r32ui,
                                          Format::depth32f),
                          [](const auto& instance) { return name(instance.param); });
+
+// Fetched as halves and widened here; NaN is left out, since nothing promises its payload.
+TEST_F(TextureTest, EveryHalfReadsBackAsItself) {
+  std::vector<float> all;
+  for (int sign = 0; sign < 2; ++sign) {
+    for (int exponent = 0; exponent < 31; ++exponent)
+      for (int mantissa = 0; mantissa < 1024; ++mantissa)
+        all.push_back((sign == 0 ? 1.0F : -1.0F) *
+                      std::ldexp(static_cast<float>(mantissa + (exponent > 0 ? 1024 : 0)), std::max(exponent, 1) - 25));
+    all.push_back((sign == 0 ? 1.0F : -1.0F) * std::numeric_limits<float>::infinity());
+  }
+  all.resize((all.size() + 255) / 256 * 256, 0.5F);
+  Texture texture = Texture::make_2d("halves", Format::rgba16f, 64, static_cast<int>(all.size() / 256));
+  texture.upload(all);
+  const std::vector<float> got = texture.read();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(got[i]), std::bit_cast<std::uint32_t>(all[i])) << all[i];
+}
 
 TEST_F(TextureTest, RoundTrips3d) {
   Texture texture = Texture::make_3d("volume", Format::rg16f, 3, 4, 5);
