@@ -142,6 +142,11 @@ struct RenderSession::State {
       depth = gl::Texture::make_2d("frame depth", gl::Format::depth32f, samples.width, samples.height);
       framebuffer = gl::Framebuffer("frame", {&color}, &depth);
     }
+    if (frame.supersampling == 1 && pixels) {
+      pixels = {};
+      pixel_framebuffer = {};
+      mean = {};
+    }
     if (frame.supersampling > 1 && !fits(pixels, camera)) {
       pixels = gl::Texture::make_2d("frame pixels", format, camera.width, camera.height);
       pixels.set_sampling(gl::Filter::nearest, gl::Wrap::clamp);
@@ -247,6 +252,7 @@ void RenderSession::render(gl::PassTimer& timer) {
     s.average_samples();
   }
   timer.end_frame();
+  s.forward.end_frame();
   gl::check("render", s.info->name);
 }
 

@@ -105,12 +105,15 @@ ForwardPass::Batch ForwardPass::make_batch(std::size_t mesh, std::span<const Ins
 // their vertices than on all that is seen.
 const ForwardPass::Visible& ForwardPass::visible(const glm::mat4& world_to_clip, Objects objects) const {
   for (const Visible& kept : visible_) {
-    if (kept.objects == objects && kept.world_to_clip == world_to_clip) return kept;
+    if (kept.objects != objects || kept.world_to_clip != world_to_clip) continue;
+    kept.used_in = frame_;
+    return kept;
   }
   if (visible_.size() >= kKeptViews) visible_.erase(visible_.begin());
   Visible& out = visible_.emplace_back();
   out.world_to_clip = world_to_clip;
   out.objects = objects;
+  out.used_in = frame_;
   out.batches.resize(meshes_.size());
   std::vector<InstanceAttributes> seen;
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
@@ -124,6 +127,15 @@ const ForwardPass::Visible& ForwardPass::visible(const glm::mat4& world_to_clip,
     if (!seen.empty()) out.batches[m] = make_batch(m, seen);
   }
   return out;
+}
+
+void ForwardPass::end_frame() {
+  const auto unused = [this](const auto& gathered) { return gathered.used_in < frame_; };
+  std::erase_if(visible_, unused);
+  std::erase_if(alone_, [&](const auto& entry) { return unused(entry.second); });
+  std::erase_if(everything_,
+                [&](const auto& entry) { return std::all_of(entry.second.begin(), entry.second.end(), unused); });
+  ++frame_;
 }
 
 void ForwardPass::upload_lights(const Scene& scene) {
@@ -229,6 +241,7 @@ void ForwardPass::draw_visible(const glm::mat4& world_to_clip, Objects objects) 
 
 void ForwardPass::draw_batch(std::size_t mesh, const Batch& batch, int copies) const {
   constexpr GLuint kInstanceBinding = 1;
+  batch.used_in = frame_;
   batch.array.bind();
   if (copies > 1) glVertexArrayBindingDivisor(batch.array.id(), kInstanceBinding, static_cast<GLuint>(copies));
   glDrawElementsInstanced(GL_TRIANGLES, meshes_[mesh].index_count, GL_UNSIGNED_INT, nullptr,

@@ -30,6 +30,9 @@ class ForwardPass {
   /// geometry too.
   void update(const Scene&, bool meshes);
 
+  /// After a frame: frees the instances that were gathered for cameras, lights or objects which it did not use.
+  void end_frame();
+
   /// Shaded opaque objects into the bound framebuffer. Unless `keep_depth`, depth is cleared and written; with it, the
   /// depth of an earlier pass over the same geometry is reused and only visible fragments are shaded. A second colour
   /// attachment, if there is one, receives the distance from the eye [m].
@@ -87,12 +90,14 @@ class ForwardPass {
     gl::Buffer instances;
     gl::VertexArray array;
     int instance_count = 0;
+    mutable std::uint64_t used_in = 0;  // which frame
   };
   // The part of each mesh that one camera or light sees.
   struct Visible {
     glm::mat4 world_to_clip{1.0F};
     Objects objects = Objects::lambertian;
     std::vector<Batch> batches;
+    mutable std::uint64_t used_in = 0;
   };
   void upload_meshes(const Scene&);
   void gather_instances(const Scene&);
@@ -111,6 +116,7 @@ class ForwardPass {
   mutable std::vector<Visible> visible_;                               // of the last cameras and lights, newest last
   mutable std::map<int, Batch> alone_;                                 // instances drawn by themselves
   mutable std::map<Objects, std::vector<Batch>> everything_;           // instances seen or not
+  std::uint64_t frame_ = 1;
   gl::Buffer lights_;
   gl::Texture environment_;
   Environment gradient_;

@@ -68,6 +68,15 @@ void ReliefPass::update(const Scene& scene, const ForwardPass& forward) {
     }
     program_of_[index] = &found->second;
   }
+  // Nothing is kept for settings of before.
+  std::erase_if(programs_, [&](const auto& entry) {
+    return std::find(program_of_.begin(), program_of_.end(), &entry.second) == program_of_.end();
+  });
+  if (!parameters_.caustics) caustics_.clear();
+  if (!objects_) {
+    object_color_ = {};
+    object_depth_ = {};
+  }
 }
 
 void ReliefPass::set_uniforms(const Scene& scene, const Instance& instance, const Camera& camera,

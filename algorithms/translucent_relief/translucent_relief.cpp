@@ -44,6 +44,8 @@ class TranslucentRelief final : public Technique {
       auto pass = timer.pass("bloom");
       bloom_.add(target, {parameters_.bloom, parameters_.bloom_threshold, parameters_.bloom_downsampling,
                           parameters_.bloom_sigma});
+    } else {
+      bloom_ = {};
     }
     frame_ = Frame{&scene, &forward, camera};
   }

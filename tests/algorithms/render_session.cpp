@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "gl/context.hpp"
+#include "gl/live_objects.hpp"
 #include "tests/algorithms/scenes.hpp"
 
 namespace pellucid {
@@ -56,6 +57,25 @@ TEST(SharedFrame, SupersamplingBeyondTheDeviceIsRefused) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("frame.supersampling = 4"), std::string::npos) << error.what();
   }
+}
+
+// Instances gathered for a camera that looks elsewhere now, and targets of settings of before, are freed with the next
+// frame.
+TEST(SharedFrame, KeepsNothingThatTheFrameDoesNotUse) {
+  const gl::Context context;
+  RenderSession session(test::fog_box_with_ball({4, 4, 4}, 0.75F, 0.9F), "ray_marching", "front", 24, 18);
+  gl::PassTimer timer;
+  session.render(timer);
+  const gl::LiveObjects first = gl::count_live_objects();
+  const View front = session.camera().view;
+  for (int i = 1; i <= 5; ++i) {
+    View turned = front;
+    turned.eye.x += 0.1F * static_cast<float>(i);
+    session.set_view(turned);
+    session.assign_text("frame.supersampling", i == 2 ? "2" : "1");
+    session.render(timer);
+  }
+  EXPECT_EQ(gl::growth(first, gl::count_live_objects()), "");
 }
 
 TEST(SharedFrame, MediaTechniquesRefuseOpticalObjects) {

@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 // Some states take minutes to prepare; a hand would not wait for them either.
 constexpr double kLongest_s = 15;
 
-constexpr int kMostKept = 5;  // times the objects of a renderer that has just started
-
 // Turns of the loop after the first picture: what the window makes once is there by then.
 constexpr int kFirstTurns = 10;
 
@@ -92,9 +90,7 @@ void Tweaking::look_back(const Workspace& workspace) {
     fault(fmt::format("a renderer that has just started draws another picture of {} with {}", fresh.state.scene,
                       fresh.state.technique));
   }
-  // A session keeps what other states of it needed, copies of instances for each light, until it ends; that is bounded.
-  const std::string kept = gl::growth(fresh.objects, old_->objects);
-  if (gl::total(old_->objects) > kMostKept * gl::total(fresh.objects))
+  if (const std::string kept = gl::growth(fresh.objects, old_->objects); !kept.empty())
     fault("the renderer's context holds more than that of one that has just started: " + kept);
   if (const std::string more = gl::growth(first_.objects, last_.objects); !more.empty())
     fault("the window's context holds more than at the start: " + more);
