@@ -128,7 +128,8 @@ bool TableReader::has(std::string_view key) const {
 }
 
 const toml::node* TableReader::find(std::string_view key, Need need) {
-  asked_.emplace_back(key);
+  // Errors list each key once, though a reader may look at it twice.
+  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
   if (need == Need::required) require(key);
   return table_->get(key);
 }

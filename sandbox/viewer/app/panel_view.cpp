@@ -43,6 +43,7 @@ PanelView::PanelView(Desk& desk, Workspace& workspace) : desk_(desk), workspace_
   model_.set = [this](const std::string& name, const Value& value) {
     guarded([&] { workspace_.set(side_, name, value); });
   };
+  model_.set_together = [this](const auto& values) { guarded([&] { workspace_.set(side_, values); }); };
 }
 
 void PanelView::guarded(const std::function<void()>& change) {
@@ -109,6 +110,7 @@ void PanelView::rebuild() {
   while (content->childCount() > 0)
     content->removeChild(content->childCount() - 1);
   rows_.clear();
+  colors_.clear();
   sections_.clear();
   build_head(*content);
   for (const Workspace::Group& group : workspace_.groups(side_)) {
@@ -116,7 +118,10 @@ void PanelView::rebuild() {
     const bool rare = group.prefix == "frame." || group.prefix == "shadow.";
     auto* section = new Section(content, group.title, folded == folded_.end() ? !rare : !folded->second);
     std::vector<ParameterRow*> rows;
-    for (const ParameterInfo& info : group.infos) {
+    for (std::size_t i = 0; i < group.infos.size(); ++i) {
+      const ParameterInfo& info = group.infos[i];
+      if (const std::string color = color_at(group.infos, i); !color.empty())
+        colors_.emplace_back(new ColorRow(section->body(), group.prefix + color, info, model_), rows_.size());
       auto* row = new ParameterRow(section->body(), group.prefix + info.name, info, model_);
       rows.push_back(row);
       rows_.push_back(row);
@@ -140,6 +145,8 @@ void PanelView::search(const std::string& text) {
     section->setVisible(any);
     if (any && !text.empty()) section->set_open(true);
   }
+  for (const auto& [color, red] : colors_)
+    color->setVisible(rows_[red]->visible() || rows_[red + 1]->visible() || rows_[red + 2]->visible());
   desk_.layout_changed();
 }
 
@@ -154,6 +161,8 @@ void PanelView::update() {
                                                        : workspace_.views().front().name;
   for (ParameterRow* row : rows_)
     row->refresh();
+  for (const auto& [color, red] : colors_)
+    color->refresh();
   if (const std::string now = current_parameter(); !now.empty()) last_ = now;
   for (const PanelPart& part : parts_)
     if (part.refresh) part.refresh();

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "sandbox/viewer/panel/color_row.hpp"
 #include "sandbox/viewer/panel/desk.hpp"
 #include "sandbox/viewer/panel/parameter_row.hpp"
 #include "sandbox/viewer/state/workspace.hpp"
@@ -54,6 +56,7 @@ class PanelView {
   ParameterModel model_;
   std::vector<PanelPart> parts_;
   std::vector<ParameterRow*> rows_;
+  std::vector<std::pair<ColorRow*, std::size_t>> colors_;  // with the place of its red channel in rows_
   std::vector<std::pair<Section*, std::vector<ParameterRow*>>> sections_;
   std::map<std::string, bool> folded_;
   Choice* scene_ = nullptr;

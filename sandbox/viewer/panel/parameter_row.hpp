@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "algorithms/parameters.hpp"
 #include "sandbox/viewer/panel/controls.hpp"
@@ -12,6 +14,7 @@ namespace pellucid::sandbox {
 struct ParameterModel {
   std::function<Value(const std::string& name)> get;
   std::function<void(const std::string& name, const Value&)> set;
+  std::function<void(const std::vector<std::pair<std::string, Value>>&)> set_together;
 };
 
 /// One parameter: a dot that says what a change costs, the name (marked where it differs from its default; a click

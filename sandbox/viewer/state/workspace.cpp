@@ -88,6 +88,17 @@ Value Workspace::get(Side side, const std::string& name) const {
 }
 
 void Workspace::set(Side side, const std::string& name, const Value& value) {
+  if (take(side, name, value)) ask();
+}
+
+void Workspace::set(Side side, const std::vector<std::pair<std::string, Value>>& values) {
+  bool changed = false;
+  for (const auto& [name, value] : values)
+    changed = take(side, name, value) || changed;
+  if (changed) ask();
+}
+
+bool Workspace::take(Side side, const std::string& name, const Value& value) {
   const ParameterInfo* known = info(side, name);
   if (known == nullptr) {
     for (const Group& group : groups(side))
@@ -96,14 +107,14 @@ void Workspace::set(Side side, const std::string& name, const Value& value) {
     throw InputError(fmt::format("unknown parameter '{}'", name));
   }
   const Value good = checked(*known, value, prefix_of(name).empty() ? technique(side) : prefix_of(name));
-  if (to_text(good) == to_text(get(side, name))) return;
+  if (to_text(good) == to_text(get(side, name))) return false;
   auto& values = values_of(side, name);
   if (to_text(good) == to_text(known->default_value)) {
     values.erase(name);
   } else {
     values[name] = good;
   }
-  ask();
+  return true;
 }
 
 // ---- what is shown ----

@@ -33,6 +33,8 @@ class Workspace {
   std::uint64_t structure() const { return structure_; }
   /// Throws InputError for a name that no table has, or a value that its declaration refuses.
   void set(Side, const std::string& name, const Value&);
+  /// Several at once, as the channels of a colour: they are drawn together.
+  void set(Side, const std::vector<std::pair<std::string, Value>>&);
   Value get(Side, const std::string& name) const;
   const ParameterInfo* info(Side, const std::string& name) const;
 
@@ -87,6 +89,7 @@ class Workspace {
 
  private:
   static std::size_t index(Side side) { return static_cast<std::size_t>(side); }
+  bool take(Side, const std::string& name, const Value&);  // true: it has changed
   void hear(Side, const RenderEvent&);
   void scene_loaded(const LoadedScene&);
   const ParameterInfo* shared_info(const std::string& name) const;

@@ -178,6 +178,16 @@ TEST_F(SceneErrors, NamePlaceAndReason) {
        "6:5: 'doc' is missing in parameters.p"},
       {"[parameters]\np = { default = 3, range = [0, 2], doc = \"d\", drives = [\"ambient\"] }\n",
        "6:17: parameters.p.default: 3 is out of its range [0, 2]"},
+      {"[parameters]\np = { default = [0, 1, 3], range = [0, 2], doc = \"d\", drives = [\"ambient\"] }\n",
+       "6:17: parameters.p.default: 3 is out of its range [0, 2]"},
+      {"[parameters]\np = { default = [0, 1], range = [0, 2], doc = \"d\", drives = [\"ambient\"] }\n",
+       "6:17: parameters.p.default must have 3 numbers [r, g, b], not 2"},
+      {"[parameters]\np = { default = [45, 45, 45], range = [30, 60], doc = \"d\", drives = "
+       "[\"views.front.fov_y_deg\"] }\n",
+       "6:70: parameters.p.drives: views.front.fov_y_deg is no colour, and the default is one"},
+      {"[parameters]\np = { default = [1, 1, 1], range = [0, 2], doc = \"d\", drives = [\"ambient\"] }\n"
+       "p_green = { default = 1, range = [0, 2], doc = \"d\", drives = [\"ambient.b\"] }\n",
+       "7:11: parameters.p_green: there are two parameters 'p_green'"},
       {"[parameters]\np = { default = nan, range = [0, 2], doc = \"d\", drives = [\"ambient\"] }\n",
        "6:17: parameters.p.default = nan is out of range [-1000000000000, 1000000000000]"},
       {"[parameters]\np = { default = 2, range = [2, 2], doc = \"d\", drives = [\"ambient\"] }\n",

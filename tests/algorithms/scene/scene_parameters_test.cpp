@@ -133,6 +133,21 @@ seed = { default = 1, range = [0, 99], doc = "which forest", drives = ["forest.s
   EXPECT_EQ(seed.default_value, Value(std::int64_t{1}));
 }
 
+TEST_F(SceneParameters, AColorIsThreeOfThem) {
+  Scene scene = load(
+      R"(paint = { default = [0.8, 0.1, 0.2], range = [0, 1], doc = "paint", drives = ["materials.red.albedo"] }
+sun = { default = [1, 1, 1], range = [0, 2], mode = "scale", doc = "sun", drives = ["lights.sun.intensity"] }
+)");
+  ASSERT_EQ(scene.parameters().infos().size(), 7U);
+  EXPECT_EQ(scene.parameters().infos()[1].name, "paint_green");
+  EXPECT_EQ(scene.parameters().infos()[1].doc, "paint, green");
+  EXPECT_EQ(scene.parameters().infos()[1].default_value, Value(0.1));
+  scene.parameters().assign("paint_green", 0.5, "scene p");
+  EXPECT_EQ(scene.materials[0].albedo, glm::vec3(0.8F, 0.5F, 0.2F));
+  scene.parameters().assign("sun_blue", 0.5, "scene p");
+  EXPECT_EQ(scene.lights[0].intensity, glm::vec3(1, 2, 1.5F));
+}
+
 TEST_F(SceneParameters, DriveOneNumberOrSeveral) {
   Scene scene = load(R"(phi = { default = 2, range = [0, 10], doc = "d", drives = ["volume.extinction"] }
 factor = { default = 1, range = [0, 4], doc = "d", mode = "scale", drives = ["volume.extinction", "lights.sun.intensity"] }
