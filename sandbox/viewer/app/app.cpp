@@ -205,6 +205,7 @@ void App::show_pictures() {
     if (workspace_.picture(side) == shown_[i]) continue;
     shown_[i] = workspace_.picture(side);
     changed = true;
+    picture_came_ = true;
     if (!shown_[i]) continue;
     const Picture& picture = *shown_[i];
     if (side == Side::a) {
@@ -289,27 +290,25 @@ void App::tick() {
   if (blink_) picture_dirty_ = true;
 }
 
-void App::draw() {
+void App::draw(bool with_panel) {
   const Region at = region();
   if (zoom_.fitted && shown_[0])
     zoom_.fit(at, shown_[0]->image.width, shown_[0]->image.height, effective_display().mode);
-  if (panel_dirty_) {
+  if (with_panel || !layer_.fits(framebuffer_width_, framebuffer_height_)) {
     panel_.update();
     drawn_status_ = status();
     layer_.begin(framebuffer_width_, framebuffer_height_);
     desk_->draw_all();
     PanelLayer::end();
+    panel_dirty_ = false;
+    held_since_s_ = -1;
   }
+  if (shown_[0]) pictures_.draw(effective_display(), at, zoom_);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, framebuffer_width_, framebuffer_height_);
-  glDisable(GL_SCISSOR_TEST);
-  glClearColor(0.11F, 0.115F, 0.125F, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  if (shown_[0]) pictures_.draw(effective_display(), at, zoom_, framebuffer_height_);
-  pictures_.draw_layer(layer_.texture());
+  pictures_.show(at, layer_.texture());
   window_.swap_buffers();
-  panel_dirty_ = picture_dirty_ = false;
-  write_journal(at);
+  picture_dirty_ = picture_came_ = false;
+  if (!panel_dirty_) write_journal(at);
 }
 
 void App::write_journal(const Region& at) {
@@ -338,9 +337,9 @@ std::optional<double> App::next_wake_s() const {
   return due;
 }
 
-bool App::draw_or_give_up() {
+bool App::draw_or_give_up(bool with_panel) {
   try {
-    draw();
+    draw(with_panel);
     if (gl::Window::context_lost()) throw RuntimeError("the device was reset");
     if (options_.lose_context_at > 0 && options_.lose_context_at <= workspace_.pictures_seen() && kept_.windows == 1)
       throw RuntimeError("as --lose-context-at asks for");
@@ -354,8 +353,8 @@ bool App::draw_or_give_up() {
   }
 }
 
-// A frame that comes within a moment is drawn together with the panel: else the two share the processor, where that
-// rasterises, and the frame comes later.
+// The panel waits for a frame that comes within a moment: else the two share the processor, where that rasterises, and
+// the frame comes later.
 bool App::holds_back() {
   const double now = glfwGetTime();
   if (!workspace_.busy() || !shown_[0] || (held_since_s_ >= 0 && now - held_since_s_ > kHeldBack_s)) {
@@ -368,20 +367,24 @@ bool App::holds_back() {
 
 bool App::turn(std::optional<double> longest_s) {
   const bool dirty = panel_dirty_ || picture_dirty_;
-  gl::Window::wait_events(held_since_s_ >= 0 ? std::optional(kHeldBack_s / 4) : dirty ? std::optional(0.0) : longest_s);
+  gl::Window::wait_events(held_since_s_ >= 0 && !picture_dirty_ ? std::optional(kHeldBack_s / 4)
+                          : dirty                               ? std::optional(0.0)
+                                                                : longest_s);
   tick();
   const bool hint_due = desk_->hint_due_s() <= 0;
   panel_dirty_ = panel_dirty_ || (hint_due && !hint_was_due_);
   hint_was_due_ = hint_due;
-  if ((panel_dirty_ || picture_dirty_) && !holds_back()) {
-    if (!draw_or_give_up()) return false;
+  // A picture that has just come is shown before the panel is drawn, which costs as much again.
+  const bool panel_due = panel_dirty_ && !holds_back() && !picture_came_;
+  if (panel_due || picture_dirty_) {
+    if (!draw_or_give_up(panel_due)) return false;
     if (redraws_ > 0) {
       --redraws_;
       picture_dirty_ = true;
     }
   }
   // After the window's own drawing, which would share the processor with the frame.
-  if (measuring_ && !workspace_.busy()) workspace_.ask();
+  if (measuring_ && !workspace_.busy() && !panel_dirty_) workspace_.ask();
   return true;
 }
 

@@ -94,7 +94,8 @@ class App {
   // measure.cpp
   int measure();
   double until(const char* what, const std::function<bool()>& reached);
-  bool shows_the_state() const;
+  bool shows_the_picture() const;  ///< of the panel's state
+  bool shows_the_state() const;    ///< the same, and the panel is drawn
   std::pair<double, double> measure_frames();
   std::vector<double> measure_typing();
   std::vector<double> measure_saving();
@@ -108,8 +109,8 @@ class App {
   double frames_per_s() const;
   // app.cpp
   void tick();
-  void draw();
-  bool draw_or_give_up();
+  void draw(bool with_panel);
+  bool draw_or_give_up(bool with_panel);
   bool holds_back();
   bool turn(std::optional<double> longest_s);  ///< of the loop; false when the graphics context failed
   void write_journal(const Region&);
@@ -144,7 +145,8 @@ class App {
   std::vector<Action> actions_;
 
   bool panel_dirty_ = true, picture_dirty_ = true;
-  int drawings_ = 0;  ///< that went well
+  bool picture_came_ = false;  ///< from a renderer, and was not drawn yet
+  int drawings_ = 0;           ///< that went well
   bool hint_was_due_ = false;
   double held_since_s_ = -1;  ///< a drawing is held back; negative: none is
   std::string drawn_status_;

@@ -10,8 +10,12 @@ void delete_renderbuffer(GLuint id) {
   glDeleteRenderbuffers(1, &id);
 }
 
+bool PanelLayer::fits(int width, int height) const {
+  return texture_ && texture_.width() == width && texture_.height() == height;
+}
+
 void PanelLayer::begin(int width, int height) {
-  if (!texture_ || texture_.width() != width || texture_.height() != height) {
+  if (!fits(width, height)) {
     texture_ = gl::Texture::make_2d("panel", gl::Format::rgba8, width, height);
     framebuffer_ = gl::Framebuffer("panel", {&texture_});
     GLuint id = 0;

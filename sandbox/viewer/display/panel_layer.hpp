@@ -10,6 +10,7 @@ void delete_renderbuffer(GLuint);
 /// of a simple scene where the CPU rasterises.
 class PanelLayer {
  public:
+  bool fits(int width, int height) const;
   /// Fits the size, clears, and binds for drawing (with a stencil).
   void begin(int width, int height);
   static void end();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <epoxy/gl.h>
+#include <glm/glm.hpp>
 
 #include "gl/context.hpp"
 #include "sweeps/metrics/flip.hpp"
@@ -14,6 +15,13 @@ namespace pellucid::sandbox {
 namespace {
 
 constexpr const char* kFullscreen = "algorithms/shaders/fullscreen.vert.glsl";
+constexpr const char* kPicture = "sandbox/viewer/display/picture.frag.glsl";
+const glm::vec3 kGround(0.11F, 0.115F, 0.125F);
+
+void switch_off_tests() {
+  for (const GLenum test : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE})
+    glDisable(test);
+}
 
 // FLIP's own colours, so that all maps of the window share one scale.
 gl::Texture make_ramp() {
@@ -54,20 +62,28 @@ void Zoom::about(float x, float y, float factor) {
 
 PictureView::PictureView()
     : ramp_(make_ramp()),
-      compose_("compose pictures", {kFullscreen, "sandbox/viewer/display/compose.frag.glsl"}),
-      overlay_("over the picture", {kFullscreen, "sandbox/viewer/display/overlay.frag.glsl"}),
-      layer_("panel's layer", {kFullscreen, "sandbox/viewer/display/layer.frag.glsl"}),
+      window_("window", {kFullscreen, "sandbox/viewer/display/window.frag.glsl"}),
       triangle_("window") {
-  transform_.emplace();
+  set_transform({}, {}, {});
   set_a(Image(1, 1, 4));
   set_b(Image(1, 1, 4));
 }
 
 void PictureView::set_transform(const std::string& display, const std::string& view, const std::string& look) {
   transform_ = gl::DisplayTransform(display, view, look);
+  plain_ = transform_->program("picture", kFullscreen, kPicture, {{"PLAIN", "1"}});
+  full_ = transform_->program("pictures", kFullscreen, kPicture);
+  drawn_.reset();
+}
+
+const gl::Program& PictureView::program_for(const DisplaySettings& settings) const {
+  const bool plain = settings.mode == CompareMode::a && settings.channel < 0 && !settings.warn &&
+                     !settings.false_color && !settings.encoded;
+  return plain ? plain_ : full_;
 }
 
 void PictureView::upload(const Image& image, gl::Texture& texture, const char* label) {
+  drawn_.reset();
   const bool fits = texture && texture.width() == image.width && texture.height() == image.height;
   if (!fits) texture = gl::Texture::make_2d(label, gl::Format::rgba32f, image.width, image.height);
   // Rows stay as they are, from the top: the shader knows.
@@ -86,71 +102,56 @@ void PictureView::upload(const Image& image, gl::Texture& texture, const char* l
   texture.upload(texels);
 }
 
-void PictureView::set_viewport(const Region& region, int framebuffer_height) const {
-  glViewport(region.x, framebuffer_height - region.y - region.height, region.width, region.height);
-}
-
-void PictureView::draw(const DisplaySettings& settings, const Region& region, const Zoom& zoom,
-                       int framebuffer_height) {
-  if (!composed_ || composed_.width() != region.width || composed_.height() != region.height) {
-    composed_ = gl::Texture::make_2d("composed picture", gl::Format::rgba32f, region.width, region.height);
-    composed_framebuffer_ = gl::Framebuffer("composed picture", {&composed_});
+void PictureView::draw(const DisplaySettings& settings, const Region& region, const Zoom& zoom) {
+  const Drawn wanted{settings, region, zoom};
+  if (drawn_ == wanted) return;
+  drawn_ = wanted;
+  if (!displayed_ || displayed_.width() != region.width || displayed_.height() != region.height) {
+    displayed_ = gl::Texture::make_2d("displayed picture", gl::Format::rgba8, region.width, region.height);
+    displayed_framebuffer_ = gl::Framebuffer("displayed picture", {&displayed_});
   }
-  GLint target = 0;
-  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-  glDisable(GL_BLEND);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_STENCIL_TEST);
-  glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_CULL_FACE);
-  composed_framebuffer_.bind();
-  compose_.use();
-  compose_.set("origin", glm::vec2(zoom.left, zoom.top));
-  compose_.set("per_pixel", 1 / zoom.scale);
-  compose_.set("region", glm::ivec2(region.width, region.height));
-  compose_.set("mode", static_cast<int>(settings.mode));
-  compose_.set("wipe", settings.wipe);
-  compose_.set("gain", settings.gain);
-  compose_.set("channel", settings.channel);
+  const gl::Program& program = program_for(settings);
+  displayed_framebuffer_.bind();
+  switch_off_tests();
+  program.use();
+  program.set("origin", glm::vec2(zoom.left, zoom.top));
+  program.set("per_pixel", 1 / zoom.scale);
+  program.set("region", glm::ivec2(region.width, region.height));
+  program.set("exposure", std::exp2(settings.exposure_ev));
+  program.set("ground", kGround);
+  program.set("mode", static_cast<int>(settings.mode));
+  program.set("wipe", settings.wipe);
+  program.set("gain", settings.gain);
+  program.set("channel", settings.channel);
+  program.set("warn", settings.warn);
+  program.set("false_color", settings.false_color);
+  program.set("encoded", settings.encoded);
   a_.bind(0);
   b_.bind(1);
+  ramp_.bind(2);
+  transform_->bind_luts();
   triangle_.bind();
   glDrawArrays(GL_TRIANGLES, 0, 3);
-
-  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-  set_viewport(region, framebuffer_height);
-  if (!settings.encoded && !settings.false_color) transform_->draw(composed_, settings.exposure_ev);
-  // gl_FragCoord counts from the window's corner; the overlay reads the composed picture from its own.
-  overlay_.use();
-  overlay_.set("corner", glm::ivec2(region.x, framebuffer_height - region.y - region.height));
-  overlay_.set("warn", settings.warn);
-  overlay_.set("false_color", settings.false_color);
-  overlay_.set("encoded", settings.encoded);
-  overlay_.set("exposure_ev", settings.exposure_ev);
-  composed_.bind(0);
-  ramp_.bind(1);
-  triangle_.bind();
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_BLEND);
   gl::check("draw", "picture");
 }
 
-void PictureView::draw_layer(const gl::Texture& layer) const {
+void PictureView::show(const Region& region, const gl::Texture& layer) const {
   glViewport(0, 0, layer.width(), layer.height());
-  layer_.use();
-  layer.bind(0);
+  switch_off_tests();
+  window_.use();
+  window_.set("corner", glm::ivec2(region.x, layer.height() - region.y - region.height));
+  window_.set("any_picture", static_cast<bool>(displayed_));
+  window_.set("ground", kGround);
+  (displayed_ ? displayed_ : ramp_).bind(0);
+  layer.bind(1);
   triangle_.bind();
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_BLEND);
-  gl::check("draw", "panel's layer");
+  gl::check("draw", "window");
 }
 
 std::string PictureView::reload_shaders() {
-  return compose_.reload() + overlay_.reload() + layer_.reload();
+  drawn_.reset();
+  return plain_.reload() + full_.reload() + window_.reload();
 }
 
 }  // namespace pellucid::sandbox

@@ -21,11 +21,13 @@ struct DisplaySettings {
   float exposure_ev = 0;
   bool warn = false, false_color = false;
   bool encoded = false;  ///< the pictures hold display-encoded colours: maps of errors
+  bool operator==(const DisplaySettings&) const = default;
 };
 
 /// A rectangle in framebuffer pixels, from the top left.
 struct Region {
   int x = 0, y = 0, width = 1, height = 1;
+  bool operator==(const Region&) const = default;
 };
 
 /// Which part of the picture is seen, how large.
@@ -33,12 +35,13 @@ struct Zoom {
   float scale = 1;          ///< window pixels per picture pixel
   float left = 0, top = 0;  ///< the picture pixel at the region's top left corner
   bool fitted = true;       ///< follows the region: 1:1 where the picture has room, else as large as it goes
+  bool operator==(const Zoom&) const = default;
   void fit(const Region&, int width, int height, CompareMode);
   /// Zooms by `factor`, keeping what lies under (x, y) [pixels from the region's corner].
   void about(float x, float y, float factor);
 };
 
-/// Draws pictures into the window: compose, display transform, warnings.
+/// Draws pictures as the display shows them, and the window of one and the panel.
 class PictureView {
  public:
   PictureView();
@@ -47,16 +50,26 @@ class PictureView {
   /// Throws InputError for a display, view or look that the config lacks; the last transform then stays.
   void set_transform(const std::string& display, const std::string& view, const std::string& look);
   const gl::DisplayTransform& transform() const { return *transform_; }
-  void draw(const DisplaySettings&, const Region&, const Zoom&, int framebuffer_height);
-  void draw_layer(const gl::Texture& layer) const;  ///< over the whole viewport
+  /// Draws the pictures at the region's size, unless nothing has changed since the last call.
+  void draw(const DisplaySettings&, const Region&, const Zoom&);
+  /// Into the bound framebuffer, which has the layer's size: what draw() left, with `layer` over it.
+  void show(const Region&, const gl::Texture& layer) const;
   std::string reload_shaders();
 
  private:
-  static void upload(const Image&, gl::Texture&, const char* label);
-  void set_viewport(const Region&, int framebuffer_height) const;
-  gl::Texture a_, b_, ramp_, composed_;
-  gl::Framebuffer composed_framebuffer_;
-  gl::Program compose_, overlay_, layer_;
+  void upload(const Image&, gl::Texture&, const char* label);
+  const gl::Program& program_for(const DisplaySettings&) const;
+  gl::Texture a_, b_, ramp_, displayed_;
+  gl::Framebuffer displayed_framebuffer_;
+  struct Drawn {
+    DisplaySettings settings;
+    Region region;
+    Zoom zoom;
+    bool operator==(const Drawn&) const = default;
+  };
+  std::optional<Drawn> drawn_;  // what is displayed; nothing when the pictures are others since
+  gl::Program plain_, full_;    // the first for one picture as it is
+  gl::Program window_;
   gl::VertexArray triangle_;
   std::optional<gl::DisplayTransform> transform_;
 };
