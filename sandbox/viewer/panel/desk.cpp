@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sandbox/viewer/panel/controls.hpp"
 
 namespace pellucid::sandbox {
@@ -15,6 +17,7 @@ namespace {
 constexpr int kPanelWidth = 348;
 constexpr int kStatusHeight = 22;
 constexpr double kHintDelay_s = 0.6;
+constexpr float kKeysLine = 19, kKeysMargin = 14;
 
 void collect(nanogui::Widget* widget, std::vector<nanogui::Widget*>& out) {
   for (nanogui::Widget* child : widget->children()) {
@@ -167,6 +170,10 @@ bool Desk::keyboardEvent(int pressed, int scancode, int action, int modifiers) {
   const bool down = action == GLFW_PRESS || action == GLFW_REPEAT;
   // Shift alone leaves the page, so that the key that opened it closes it too.
   const bool modifier_alone = pressed >= GLFW_KEY_LEFT_SHIFT && pressed <= GLFW_KEY_RIGHT_SUPER;
+  if (keys_shown_ && down && (pressed == GLFW_KEY_PAGE_DOWN || pressed == GLFW_KEY_PAGE_UP)) {
+    keys_page_ = std::clamp(keys_page_ + (pressed == GLFW_KEY_PAGE_DOWN ? 1 : -1), 0, key_page().pages - 1);
+    return true;
+  }
   if (keys_shown_ && action == GLFW_PRESS && !modifier_alone) {
     keys_shown_ = false;
     swallow_character_ = true;
@@ -179,6 +186,8 @@ bool Desk::keyboardEvent(int pressed, int scancode, int action, int modifiers) {
   if (nanogui::Widget* widget = focus(); widget != nullptr && widget != this) {
     if (widget->keyboardEvent(pressed, scancode, action, modifiers)) return true;
     if (down && pressed == GLFW_KEY_ESCAPE) {
+      // What runs is cancelled first, as the status line says.
+      if (key && key(pressed, action, modifiers)) return true;
       updateFocus(nullptr);
       return true;
     }
@@ -274,24 +283,50 @@ void Desk::draw_hint(NVGcontext* ctx) {
   paint::paragraph(ctx, x + margin, y + margin, width, words, paint::text(), paint::kText, true);
 }
 
+void Desk::toggle_keys() {
+  keys_shown_ = !keys_shown_;
+  keys_page_ = 0;
+}
+
+Desk::KeyPage Desk::key_page() const {
+  const float room_x = static_cast<float>(mSize.x()) - 2 * kKeysMargin, narrow = 380;
+  const float room_y = static_cast<float>(mSize.y()) - 8 - 2 * kKeysMargin;
+  const int all = static_cast<int>(keys.size());
+  KeyPage out;
+  out.columns = std::clamp(static_cast<int>(room_x / narrow), 1, 2);
+  const int rows = std::max(1, static_cast<int>(room_y / kKeysLine));
+  out.per_column = std::min(rows, (all + out.columns - 1) / out.columns);
+  // The last line of a page among several says so.
+  if (out.columns * out.per_column < all) {
+    out.per_column = std::max(1, rows - 1);
+    out.pages = (all + out.columns * out.per_column - 1) / (out.columns * out.per_column);
+  }
+  return out;
+}
+
 void Desk::draw_keys(NVGcontext* ctx) const {
   const float screen_w = static_cast<float>(mSize.x()), screen_h = static_cast<float>(mSize.y());
-  const float line = 19, margin = 14, narrow = 380, wide = 500;
-  const int columns = std::max(1, std::min(2, static_cast<int>((screen_w - 2 * margin) / narrow)));
-  const float column = std::min(wide, (screen_w - 8 - 2 * margin) / static_cast<float>(columns));
-  const int per_column = (static_cast<int>(keys.size()) + columns - 1) / columns;
-  const float width = std::min(screen_w - 8, static_cast<float>(columns) * column + 2 * margin);
-  const float height = std::min(screen_h - 8, static_cast<float>(per_column) * line + 2 * margin);
+  const float wide = 500;
+  const auto [columns, per_column, pages] = key_page();
+  const int lines = per_column + (pages > 1 ? 1 : 0);
+  const float column = std::min(wide, (screen_w - 8 - 2 * kKeysMargin) / static_cast<float>(columns));
+  const float width = std::min(screen_w - 8, static_cast<float>(columns) * column + 2 * kKeysMargin);
+  const float height = std::min(screen_h - 8, static_cast<float>(lines) * kKeysLine + 2 * kKeysMargin);
   const float x = (screen_w - width) / 2, y = (screen_h - height) / 2;
   paint::box(ctx, x, y, width, height, nvgRGBA(18, 19, 21, 240), 6);
-  for (int i = 0; i < static_cast<int>(keys.size()); ++i) {
-    const float at_x = x + margin + static_cast<float>(i / per_column) * column;
-    const float at_y = y + margin + static_cast<float>(i % per_column) * line;
-    if (at_y + line > y + height) continue;
-    const auto& [name, meaning] = keys[static_cast<std::size_t>(i)];
-    paint::line(ctx, at_x, at_y, 118, line, name, paint::accent());
-    paint::line(ctx, at_x + 122, at_y, column - 140, line, meaning, paint::text());
+  const int page = std::min(keys_page_, pages - 1), first = page * columns * per_column;
+  const float name_width = std::min(118.0F, column * 0.4F);
+  for (int i = 0; i < columns * per_column && first + i < static_cast<int>(keys.size()); ++i) {
+    const float at_x = x + kKeysMargin + static_cast<float>(i / per_column) * column;
+    const float at_y = y + kKeysMargin + static_cast<float>(i % per_column) * kKeysLine;
+    const auto& [name, meaning] = keys[static_cast<std::size_t>(first + i)];
+    paint::line(ctx, at_x, at_y, name_width, kKeysLine, name, paint::accent());
+    paint::line(ctx, at_x + name_width + 4, at_y, column - name_width - 8, kKeysLine, meaning, paint::text());
   }
+  if (pages == 1) return;
+  const std::string words = fmt::format("{} of {}: Page Down and Page Up turn the page", page + 1, pages);
+  paint::line(ctx, x + kKeysMargin, y + height - kKeysMargin - kKeysLine, width - 2 * kKeysMargin, kKeysLine, words,
+              paint::dim_text());
 }
 
 }  // namespace pellucid::sandbox

@@ -41,7 +41,7 @@ class Desk : public nanogui::Screen {
 
   void open_list(nanogui::Widget* anchor, const std::vector<std::string>& items, const std::string& current,
                  std::function<void(const std::string&)> chosen);
-  void toggle_keys() { keys_shown_ = !keys_shown_; }
+  void toggle_keys();
   bool keys_shown() const { return keys_shown_; }
   /// Something was folded, hidden or grew; everything is placed again before the next drawing.
   void layout_changed() { layout_pending_ = true; }
@@ -66,9 +66,14 @@ class Desk : public nanogui::Screen {
   std::vector<nanogui::Widget*> ring();
   std::string hint_at_pointer();
   void draw_hint(NVGcontext*);
+  struct KeyPage {
+    int columns = 1, per_column = 1, pages = 1;
+  };
+  KeyPage key_page() const;  ///< how many keys the window has room for
   void draw_keys(NVGcontext*) const;
   ScrollArea* panel_;
   ListPopup* popup_ = nullptr;
+  int keys_page_ = 0;
   bool layout_pending_ = true, keys_shown_ = false, swallow_character_ = false;
   double moved_s_ = 0;
 };
