@@ -14,6 +14,7 @@
 #include "gl/error.hpp"
 #include "sandbox/viewer/out/tev_client.hpp"
 #include "tests/sandbox/program.hpp"
+#include "tests/viewer/window.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -137,6 +138,47 @@ TEST(Tev, IsFedByRender) {
   std::vector<float> sent(image.pixels.size());
   std::memcpy(sent.data(), bytes.data() + bytes.size() - sent.size() * sizeof(float), sent.size() * sizeof(float));
   EXPECT_EQ(sent, image.pixels);
+}
+
+// Each picture that the window shows, the last one that of the last state.
+TEST(Tev, IsFedByTheWindow) {
+  std::string why;
+  if (test::XServer::get(why) == nullptr) GTEST_SKIP() << why;
+  test::TemporaryFolder folder;
+  const std::string scene = test::write_small_scene(folder).string();
+  Listener listener;
+  {
+    test::ViewerWindow window(
+        {scene, "-t", "volume_slices", "-s", "slices=9", "--size", "32x24", "--tev", listener.address()}, folder);
+    window.wait_picture();
+    window.tab_to("slices");
+    window.key("Right");
+    window.wait_picture([](const auto& recipe) { return test::ViewerWindow::value(recipe, "slices") == 10; });
+    window.close();
+  }
+  const std::vector<std::uint8_t> bytes = listener.bytes();
+  const std::size_t floats = std::size_t{32} * 24 * 4;
+  Reader read{bytes};
+  std::vector<int> kinds;
+  while (read.at < bytes.size()) {
+    const std::size_t start = read.at;
+    const auto length = read.take<std::uint32_t>();
+    ASSERT_GE(length, 5U);
+    kinds.push_back(read.take<std::uint8_t>());
+    read.take<std::uint8_t>();
+    EXPECT_EQ(read.text(), "volume_slices of " + scene);
+    read.at = start + length;
+  }
+  ASSERT_EQ(read.at, bytes.size());
+  ASSERT_GE(kinds.size(), 3U);
+  EXPECT_EQ(kinds.front(), 4) << "the image is created once";
+  for (std::size_t i = 1; i < kinds.size(); ++i)
+    EXPECT_EQ(kinds[i], 6);
+  std::vector<float> sent(floats);
+  std::memcpy(sent.data(), bytes.data() + bytes.size() - floats * sizeof(float), floats * sizeof(float));
+  ASSERT_TRUE(test::succeeded(test::pellucid({"render", scene, "-t", "volume_slices", "-s", "slices=10", "--size",
+                                              "32x24", "-o", (folder / "a.exr").string()})));
+  EXPECT_EQ(sent, read_image(folder / "a.exr").image.pixels);
 }
 
 }  // namespace

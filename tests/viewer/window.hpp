@@ -36,7 +36,8 @@ class XServer {
 /// True of an event of the log that goes by `name`.
 bool is(const nlohmann::json& event, const char* name);
 
-/// `pellucid view` with `arguments`, until it is closed or goes out of scope.
+/// `pellucid view` with `arguments`, until it is closed or goes out of scope; "--ui-scale monitor" leaves the scale to
+/// the monitor, else it is 1.
 class ViewerWindow {
  public:
   ViewerWindow(std::vector<std::string> arguments, const TemporaryFolder&, std::map<std::string, std::string> env = {});

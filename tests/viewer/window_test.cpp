@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <thread>
@@ -216,6 +218,14 @@ TEST_F(Window, SavesTheHeadlessPictureAndOpensItAgain) {
     const std::string out = (folder_ / "clip.exr").string();
     ASSERT_TRUE(succeeded(run({"sh", "-c", "exec xclip -selection clipboard -t image/x-exr -o > '" + out + "'"},
                               {.environment = {{"DISPLAY", window.display()}}})));
+    // And as PNG, which is the one that is saved.
+    window.key("ctrl+c");
+    window.wait("copied", [](const json& e) { return e.at("event") == "copied"; });
+    const std::string png = (folder_ / "clip.png").string();
+    ASSERT_TRUE(succeeded(run({"sh", "-c", "exec xclip -selection clipboard -t image/png -o > '" + png + "'"},
+                              {.environment = {{"DISPLAY", window.display()}}})));
+    window.key("ctrl+shift+s");
+    window.wait("saved", [](const json& event) { return event.at("event") == "saved"; });
     window.key("c");
     const std::string command =
         window.wait("copied", [](const json& e) { return e.at("event") == "copied"; }).at("text");
@@ -230,12 +240,52 @@ TEST_F(Window, SavesTheHeadlessPictureAndOpensItAgain) {
   const ImageFile copied = read_image(folder_ / "clip.exr");
   EXPECT_EQ(copied.image.pixels, saved.image.pixels);
   EXPECT_EQ(copied.attributes.at("pellucid.recipe"), saved.attributes.at("pellucid.recipe"));
+  const auto png_name = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      if (entry.path().extension() == ".png" && entry.path().filename() != "clip.png") return entry.path();
+    return std::filesystem::path();
+  };
+  EXPECT_EQ(read_file(folder_ / "clip.png"), read_file(png_name()));
 
   ViewerWindow again({(folder_ / "small.scene_sampling_hulls_001.exr").string()}, folder_);
   const json picture = again.wait_picture();
   const json recipe = json::parse(saved.attributes.at("pellucid.recipe"));
   EXPECT_EQ(picture.at("recipe").at("view"), recipe.at("view"));
   EXPECT_EQ(picture.at("recipe").at("parameters"), recipe.at("parameters"));
+}
+
+TEST_F(Window, FollowsTheMonitorsScale) {
+  std::string why;
+  const std::map<std::string, std::string> display{{"DISPLAY", XServer::get(why)->display()}};
+  const Outcome set =
+      run({"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER", "Xft.dpi:\t144\n"},
+          {.environment = display});
+  if (set.status != 0) GTEST_SKIP() << "xprop: " << set.err;
+  const auto panel_of = [&](const char* scale) {
+    ViewerWindow window({fog_, "-t", "volume_slices", "--size", "48x36", "--ui-scale", scale}, folder_);
+    return window.wait("a drawing", [](const json& e) { return e.at("event") == "drawn"; })
+        .at("region")
+        .at(0)
+        .get<int>();
+  };
+  const int from_monitor = panel_of("monitor"), overridden = panel_of("1.25");
+  run({"xprop", "-root", "-remove", "RESOURCE_MANAGER"}, {.environment = display});
+  EXPECT_EQ(from_monitor, 348 * 144 / 96);
+  EXPECT_EQ(overridden, 348 * 5 / 4);
+}
+
+TEST_F(Window, TellsThePrecomputationsShareAndCancelsIt) {
+  ViewerWindow window({glass_, "-t", "geocube", "-s", "resolution=32", "--size", "48x36"}, folder_,
+                      {{"PELLUCID_CACHE", "off"}});
+  const json before = window.wait_picture();
+  window.tab_to("resolution");
+  window.key("End");
+  window.wait_status({"precomputing", " %", "Esc cancels"});
+  window.key("Escape");
+  window.wait_status({"cancelled"});
+  // The state is the last picture's again, and it is what the next one shows.
+  window.key("F5");
+  EXPECT_EQ(window.wait_picture().at("recipe"), before.at("recipe"));
 }
 
 TEST(NoDisplay, IsToldWithTheCommandThatDoesTheSame) {
