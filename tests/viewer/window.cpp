@@ -163,12 +163,11 @@ json ViewerWindow::value(const json& recipe, const std::string& name) {
 }
 
 std::array<int, 4> ViewerWindow::place(const std::string& id) {
+  wait_until("the widget " + id, [&] { return shows(id); });  // a picture is seen before the panel
   const auto& all = events();
   for (auto it = all.rbegin(); it != all.rend(); ++it) {
     if (it->at("event") != "places") continue;
-    const json& widgets = it->at("widgets");
-    if (!widgets.contains(id)) throw std::runtime_error(fmt::format("there is no widget '{}'", id));
-    return widgets.at(id).get<std::array<int, 4>>();
+    return it->at("widgets").at(id).get<std::array<int, 4>>();
   }
   throw std::runtime_error("no places are known");
 }

@@ -127,6 +127,7 @@ bool Desk::mouse_moved(double x, double y) {
 }
 
 bool Desk::mouse_button(int button, int action, int modifiers) {
+  tidy();  // a list that is closed takes no more clicks, drawn or not
   if (keys_shown_ && action == GLFW_PRESS) {
     keys_shown_ = false;
     return true;
@@ -147,6 +148,7 @@ bool Desk::scrolled(double x, double y) {
 
 void Desk::key_pressed(int pressed, int scancode, int action, int modifiers) {
   swallow_character_ = false;
+  tidy();
   keyCallbackEvent(pressed, scancode, action, modifiers);
 }
 
@@ -186,7 +188,7 @@ bool Desk::keyboardEvent(int pressed, int scancode, int action, int modifiers) {
   if (nanogui::Widget* widget = focus(); widget != nullptr && widget != this) {
     if (widget->keyboardEvent(pressed, scancode, action, modifiers)) return true;
     if (down && pressed == GLFW_KEY_ESCAPE) {
-      // What runs is cancelled first, as the status line says.
+      // The work that runs is cancelled first, as the status line says.
       if (key && key(pressed, action, modifiers)) return true;
       updateFocus(nullptr);
       return true;
