@@ -15,7 +15,7 @@ namespace {
 // The least sine between ray and light that still spans a plane.
 constexpr double kLeastSine = 1e-7;
 // Triangles that share an edge give the same end to the last bits; gaps below this share of the ray's part are closed.
-constexpr double kGap = 1e-12;
+constexpr double kShadowGap = 1e-12;
 
 // g·x + c.
 struct Affine {
@@ -33,7 +33,7 @@ struct Affine {
 class Union {
  public:
   Union(double length, std::vector<Interval>& parts)
-      : length_(length), gap_(kGap * length), parts_(parts), first_(parts.size()) {}
+      : length_(length), gap_(kShadowGap * length), parts_(parts), first_(parts.size()) {}
 
   bool empty() const { return parts_.size() == first_; }
   bool complete() const { return covers(0.0, length_); }
