@@ -60,7 +60,7 @@ class Technique {
 struct TechniqueInfo {
   std::string_view name;  ///< snake_case
   std::string_view title;
-  std::string_view reference;  ///< key in references.bib
+  std::string_view citation;  ///< key in references.bib
   bool baseline = false;
   std::string_view doc;  ///< one line
   const ParameterTable& (*table)() = nullptr;

@@ -14,21 +14,6 @@
 
 namespace pellucid::sandbox {
 
-Size parse_size(const std::string& text) {
-  const std::size_t x = text.find('x');
-  long long width = 0, height = 0;
-  auto read = [](std::string_view digits, long long& out) {
-    auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
-    return error == std::errc{} && end == digits.data() + digits.size();
-  };
-  const std::string_view view = text;
-  if (x == std::string::npos || !read(view.substr(0, x), width) || !read(view.substr(x + 1), height)) {
-    throw InputError(fmt::format("--size {} is not WIDTHxHEIGHT, for example 720x540", text));
-  }
-  check_image_size(width, height, "--size");
-  return {static_cast<int>(width), static_cast<int>(height)};
-}
-
 std::pair<std::string, std::string> parse_assignment(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {

@@ -12,13 +12,6 @@
 /// Arguments that several sub-commands take, read one way.
 namespace pellucid::sandbox {
 
-struct Size {
-  int width = 0;
-  int height = 0;
-};
-/// "720x540". Throws InputError.
-Size parse_size(const std::string& text);
-
 /// "name=value". Throws InputError.
 std::pair<std::string, std::string> parse_assignment(const std::string& text);
 

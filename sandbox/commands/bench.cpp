@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/bare_frame.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
@@ -31,7 +32,7 @@ using sweeps::BenchReference;
 using sweeps::BenchResult;
 using sweeps::TimingSummary;
 
-struct Options {
+struct BenchArguments {
   std::string technique, scene, view, size = "720x540";
   std::vector<std::string> settings;
   int frames = sweeps::BenchRequest{}.frames;
@@ -47,8 +48,8 @@ struct AgainstVtk {
   std::string skipped;
 };
 
-AgainstVtk against_vtk(const TechniqueInfo& technique, const Options& options, const sweeps::BenchRequest& request,
-                       gl::Context& context) {
+AgainstVtk against_vtk(const TechniqueInfo& technique, const BenchArguments& options,
+                       const sweeps::BenchRequest& request, gl::Context& context) {
   if (!options.vtk) return {std::nullopt, "not asked for"};
   try {
     return {sweeps::bench_against_vtk(technique, request, context), {}};
@@ -135,8 +136,8 @@ void print_ceilings(const std::vector<sweeps::Ceiling>& ceilings) {
 }
 
 /// The device's ceilings, and with `all` every technique that has a bare shader, on its own scene, beside its ceiling.
-int bench_summary(const Options& options, bool all) {
-  const Size size = parse_size(options.size);
+int bench_summary(const BenchArguments& options, bool all) {
+  const FrameSize size = parse_frame_size(options.size, "--size");
   const gl::Context context({.device = options.device});
   const std::vector<sweeps::Ceiling> ceilings = sweeps::measure_ceilings();
   const auto ceiling = [&](std::string_view what) {
@@ -198,10 +199,10 @@ int bench_summary(const Options& options, bool all) {
   return kDone;
 }
 
-int bench(const Options& options) {
+int bench(const BenchArguments& options) {
   if (options.technique == "ceilings" || options.technique == "all")
     return bench_summary(options, options.technique == "all");
-  const Size size = parse_size(options.size);
+  const FrameSize size = parse_frame_size(options.size, "--size");
   const TechniqueInfo& info = find_technique(options.technique);
   const BareFrameInfo& bare = sweeps::bare_frame_of(info);
   sweeps::BenchRequest request{options.scene,  options.view,     size.width, size.height, {},
@@ -261,7 +262,7 @@ int bench(const Options& options) {
 }  // namespace
 
 void add_bench(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchArguments>();
   std::vector<std::string_view> names;
   for (const BareFrameInfo* info : bare_frames())
     names.push_back(info->technique);

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct BundleArguments {
   fs::path output;
   std::vector<std::string> assets;
 };
@@ -125,7 +125,7 @@ class Scratch {
   fs::path path_;
 };
 
-int bundle(const Arguments& arguments) {
+int bundle(const BundleArguments& arguments) {
   check_output(arguments.output, {".xz"});
   if (!arguments.output.string().ends_with(".tar.xz")) throw InputError("-o: the name must end in .tar.xz");
   const fs::path program = fs::read_symlink("/proc/self/exe");
@@ -166,7 +166,7 @@ int bundle(const Arguments& arguments) {
 }  // namespace
 
 void add_bundle(cli::App& root, std::vector<Command>& commands) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BundleArguments>();
   cli::App* app = root.add_subcommand("bundle", "Pack the program with its libraries for machines that have neither");
   app->add_option("-o,--output", arguments->output, "the archive, NAME.tar.xz")->required();
   app->add_option("--asset", arguments->assets, "an asset to take along, as meshes/bunny00.off; repeatable");

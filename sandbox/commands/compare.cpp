@@ -27,7 +27,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct CompareArguments {
   std::filesystem::path reference, test, map;
   std::vector<std::string> metrics, fail_above, fail_below;
   std::string mask;
@@ -70,7 +70,7 @@ struct Mask {
   std::string source;
 };
 
-Mask find_mask(const Options& options, const PictureFile& reference) {
+Mask find_mask(const CompareArguments& options, const PictureFile& reference) {
   const auto layer_of = [](const ImageFile& file, const std::string& name) -> const Image* {
     const auto found = file.layers.find(name);
     return found == file.layers.end() ? nullptr : &found->second;
@@ -96,7 +96,7 @@ Mask find_mask(const Options& options, const PictureFile& reference) {
 
 /// A mask that nobody asked for and that marks nothing (an opaque scene's reference, another program's layer) is left
 /// alone.
-void drop_empty_mask(const Options& options, Mask& mask, std::vector<std::string>& notes) {
+void drop_empty_mask(const CompareArguments& options, Mask& mask, std::vector<std::string>& notes) {
   if (!options.mask.empty() || !mask.image) return;
   const Image& image = *mask.image;
   bool marked = image.width < 1;
@@ -109,7 +109,7 @@ void drop_empty_mask(const Options& options, Mask& mask, std::vector<std::string
 }
 
 /// Both pictures are of one kind, size and shape of pixels.
-void check_comparable(const Options& options, const PictureFile& reference, const PictureFile& test) {
+void check_comparable(const CompareArguments& options, const PictureFile& reference, const PictureFile& test) {
   const auto kind = [](const PictureFile& file) { return file.display_encoded ? "display-encoded" : "scene-linear"; };
   if (reference.display_encoded != test.display_encoded)
     throw InputError(fmt::format("{} is {} and {} is {}: compare EXR with EXR, PNG with PNG",
@@ -124,7 +124,7 @@ void check_comparable(const Options& options, const PictureFile& reference, cons
 }
 
 /// A map must not replace what is compared.
-void check_map(const Options& options) {
+void check_map(const CompareArguments& options) {
   if (options.map.empty()) return;
   if (options.map.extension() != ".png" && options.map.extension() != ".exr")
     throw InputError(fmt::format("--map {}: the name must end in .png or .exr", options.map.string()));
@@ -137,8 +137,9 @@ std::string text_of(double value) {
   return std::isinf(value) ? "inf" : fmt::format("{:.6g}", value);
 }
 
-void print_text(const sweeps::Comparison& comparison, const sweeps::ComparisonResult& result, const Options& options,
-                bool display_encoded, const sweeps::MetricSet& metrics, const std::string& mask) {
+void print_text(const sweeps::Comparison& comparison, const sweeps::ComparisonResult& result,
+                const CompareArguments& options, bool display_encoded, const sweeps::MetricSet& metrics,
+                const std::string& mask) {
   constexpr const char* kRow = "{:<22}{:>12}{}\n";
   const auto second = [](const std::string& text) { return fmt::format("{:>12}", text); };
   fmt::print(kRow, "metric", "frame", comparison.masked() ? second("mask") : "");
@@ -156,7 +157,8 @@ void print_text(const sweeps::Comparison& comparison, const sweeps::ComparisonRe
 }
 
 ordered_json to_json(const sweeps::Comparison& comparison, const sweeps::ComparisonResult& result,
-                     const Options& options, const Image& image, bool display_encoded, const std::string& mask) {
+                     const CompareArguments& options, const Image& image, bool display_encoded,
+                     const std::string& mask) {
   ordered_json out{{"reference", options.reference.string()},
                    {"test", options.test.string()},
                    {"width", image.width},
@@ -173,7 +175,7 @@ ordered_json to_json(const sweeps::Comparison& comparison, const sweeps::Compari
   return out;
 }
 
-int compare(const Options& options) {
+int compare(const CompareArguments& options) {
   check_map(options);
   const sweeps::MetricSet metrics = options.metrics.empty() ? sweeps::MetricSet() : sweeps::MetricSet(options.metrics);
   const std::string mask_layer = options.mask.empty() ? "mask" : options.mask;
@@ -234,7 +236,7 @@ int compare(const Options& options) {
 }  // namespace
 
 void add_compare(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   cli::App* app = root.add_subcommand("compare", "Compare an image with a reference by image metrics");
   app->add_option("reference", options->reference, "The reference: EXR (scene-linear) or PNG (display-encoded)")
       ->required();

@@ -33,7 +33,7 @@ ordered_json techniques_json() {
   for (const TechniqueInfo& t : techniques()) {
     out.push_back({{"name", t.name},
                    {"title", t.title},
-                   {"reference", t.reference},
+                   {"reference", t.citation},
                    {"baseline", t.baseline},
                    {"interfaces", t.interfaces},
                    {"reliefs", t.reliefs},
@@ -188,14 +188,14 @@ int describe(const std::string& wanted, bool json) {
   if (json) {
     fmt::print("{}\n", ordered_json{{"name", technique.name},
                                     {"title", technique.title},
-                                    {"reference", technique.reference},
+                                    {"reference", technique.citation},
                                     {"baseline", technique.baseline},
                                     {"doc", technique.doc},
                                     {"parameters", parameters_json(technique.table().infos())}}
                            .dump(2));
     return kDone;
   }
-  fmt::print("{}: {} ({})\n{}\nparameters\n", technique.name, technique.title, technique.reference, technique.doc);
+  fmt::print("{}: {} ({})\n{}\nparameters\n", technique.name, technique.title, technique.citation, technique.doc);
   print_parameters(technique.table().infos());
   return kDone;
 }

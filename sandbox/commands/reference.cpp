@@ -19,6 +19,7 @@
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/finite.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
@@ -36,7 +37,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options : FrameOptions {
+struct ReferenceArguments : FrameOptions {
   std::string surfaces = "rays", method = "exact", format = "half";
   double tolerance = ReferenceOptions{}.tolerance;
   int max_steps = ReferenceOptions{}.max_steps;
@@ -46,7 +47,7 @@ struct Options : FrameOptions {
   std::string tev;  // HOST:PORT
 };
 
-sweeps::ReferenceSettings reference_settings(const Options& options) {
+sweeps::ReferenceSettings reference_settings(const ReferenceArguments& options) {
   sweeps::ReferenceSettings settings;
   settings.method = options.method == "exact" ? sweeps::ReferenceMethod::exact : sweeps::ReferenceMethod::slices;
   settings.surfaces = options.surfaces == "rays"     ? sweeps::ReferenceSurfaces::rays
@@ -64,7 +65,7 @@ sweeps::ReferenceSettings reference_settings(const Options& options) {
 }
 
 /// The `-s` of a reference: the scene's parameters, and the shadow maps' where something is drawn with them.
-std::map<std::string, Value> reference_parameters(const Options& options, Scene& scene, bool draws) {
+std::map<std::string, Value> reference_parameters(const ReferenceArguments& options, Scene& scene, bool draws) {
   std::map<std::string, Value> out;
   const auto parse = [&](const std::string& full, const std::string& bare, const std::string& text,
                          const std::string& owner, std::span<const ParameterInfo> infos) {
@@ -119,9 +120,9 @@ ordered_json statistics_json(const SurfaceStatistics& s) {
 /// One run of the command, from the scene to the picture and what is said of it.
 class ReferenceRun {
  public:
-  explicit ReferenceRun(const Options& options)
+  explicit ReferenceRun(const ReferenceArguments& options)
       : options_(options),
-        size_(parse_size(options.size)),
+        size_(parse_frame_size(options.size, "--size")),
         settings_(reference_settings(options)),
         scene_(load_scene(options.scene)),
         origin_(file_provenance()) {
@@ -266,8 +267,8 @@ class ReferenceRun {
     return recipe;
   }
 
-  const Options& options_;
-  const Size size_;
+  const ReferenceArguments& options_;
+  const FrameSize size_;
   sweeps::ReferenceSettings settings_;
   Scene scene_;
   ordered_json origin_;  ///< where the file comes from
@@ -284,7 +285,7 @@ class ReferenceRun {
   ImageFile file_;
 };
 
-int reference(const Options& options) {
+int reference(const ReferenceArguments& options) {
   check_output(options.output, {".exr", ".png"});
   std::optional<TevClient> tev;
   if (!options.tev.empty()) tev.emplace(options.tev);  // before the work
@@ -327,7 +328,7 @@ void add_rays(cli::App& app, SurfaceOptions& rays) {
 }  // namespace
 
 void add_reference(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReferenceArguments>();
   cli::App* app = root.add_subcommand("reference", "Compute the ground truth of a scene on the CPU");
   add_frame_options(*app, *options);
   app->add_option(

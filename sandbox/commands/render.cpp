@@ -16,6 +16,7 @@
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/finite.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/scene/images/picture_file.hpp"
 #include "algorithms/scene/loading_facts.hpp"
 #include "gl/context.hpp"
@@ -32,7 +33,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options : FrameOptions {
+struct RenderArguments : FrameOptions {
   std::string technique;
   std::filesystem::path maps;  // a folder; empty: none
   std::string frames, tev;     // "0:120"; "HOST:PORT"
@@ -47,7 +48,7 @@ struct Drawn {
 };
 
 /// One frame into one file.
-Drawn draw(const Options& options, RenderSession& session, const gl::Context& context, double prepare_s,
+Drawn draw(const RenderArguments& options, RenderSession& session, const gl::Context& context, double prepare_s,
            const std::filesystem::path& output, TevClient* tev) {
   gl::PassTimer timer(gl::Detail::passes);
   session.render(timer);
@@ -102,7 +103,7 @@ Drawn draw(const Options& options, RenderSession& session, const gl::Context& co
 }
 
 /// Moves the session to a frame of the range: its time, its place on the camera's way.
-void go_to_frame(const Options& options, RenderSession& session, const FrameRange& range, int frame) {
+void go_to_frame(const RenderArguments& options, RenderSession& session, const FrameRange& range, int frame) {
   const auto infos = session.scene().parameters().infos();
   const bool timed = std::any_of(infos.begin(), infos.end(), [](const auto& info) { return info.name == "time_s"; });
   if (timed) {
@@ -116,8 +117,8 @@ void go_to_frame(const Options& options, RenderSession& session, const FrameRang
   session.set_view(frame_view(session.scene(), views, range, frame));
 }
 
-int render(const Options& options) {
-  const Size size = parse_size(options.size);
+int render(const RenderArguments& options) {
+  const FrameSize size = parse_frame_size(options.size, "--size");
   check_output(options.output, {".exr", ".png"});
   const bool many = !options.frames.empty();
   const FrameRange range = many ? parse_frames(options.frames) : FrameRange{};
@@ -158,7 +159,7 @@ int render(const Options& options) {
 }  // namespace
 
 void add_render(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderArguments>();
   cli::App* render_app = root.add_subcommand("render", "Render one frame of a scene with a technique");
   add_frame_options(*render_app, *options);
   render_app->add_option("-t,--technique", options->technique, "A technique (pellucid list techniques)")->required();

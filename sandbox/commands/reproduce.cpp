@@ -16,7 +16,7 @@
 namespace pellucid::sandbox {
 namespace {
 
-struct Options {
+struct ReproduceArguments {
   std::string what;
   std::filesystem::path folder;
   std::optional<int> device;
@@ -25,7 +25,7 @@ struct Options {
   bool json = false;
 };
 
-int reproduce(const Options& options) {
+int reproduce(const ReproduceArguments& options) {
   if (options.what.ends_with(".exr")) {
     if (options.preview) throw InputError("--preview is for papers; a file is made again at its own size");
     FileOptions file{.file = options.what, .folder = options.folder, .device = options.device, .json = options.json};
@@ -48,7 +48,7 @@ int reproduce(const Options& options) {
 }  // namespace
 
 void add_reproduce(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproduceArguments>();
   cli::App* app = root.add_subcommand("reproduce", "Make a paper's tables and figures again, or a picture");
   app->add_option("what", options->what,
                   "A paper (pellucid list papers) or all, a file of your own FILE.toml, or an EXR that pellucid render "

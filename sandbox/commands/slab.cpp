@@ -18,7 +18,7 @@ namespace {
 using nlohmann::ordered_json;
 using namespace scattering;
 
-struct Options {
+struct SlabArguments {
   double depth = 1;
   SlabMedium medium;
   std::string model = "gaussian";
@@ -42,7 +42,7 @@ ordered_json curve_json(const SlabLight& light, const std::vector<double>& radia
   return out;
 }
 
-int slab(const Options& options) {
+int slab(const SlabArguments& options) {
   check_depth(options.depth, "slab");
   const SlabLight light = Slab(options.medium).light(options.depth);
   const TransferFit fit = fit_transfer(light, parse_model(options.model));
@@ -83,7 +83,7 @@ int slab(const Options& options) {
 }  // namespace
 
 void add_slab(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SlabArguments>();
   cli::App* app = root.add_subcommand("slab", "Compute how a scattering slab spreads a beam");
   app->add_option("--depth", options->depth, "Optical thickness: extinction times thickness")->required();
   app->add_option("--anisotropy", options->medium.anisotropy,

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/scene/images/image.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/error.hpp"
@@ -23,7 +24,7 @@
 namespace pellucid::sandbox {
 namespace {
 
-struct Options {
+struct ViewArguments {
   std::string scene, technique, view, size = "720x540", window;
   std::vector<std::string> settings;
   std::filesystem::path shaders;
@@ -51,7 +52,7 @@ Value value_of_text(const std::string& technique, const std::string& name, const
   return parse_value(*info, text, technique);
 }
 
-ViewState initial_state(const Options& options, const cli::App& app) {
+ViewState initial_state(const ViewArguments& options, const cli::App& app) {
   ViewState state;
   if (options.scene.ends_with(".exr")) {
     state = state_of_file(read_image(options.scene), options.scene);
@@ -66,7 +67,7 @@ ViewState initial_state(const Options& options, const cli::App& app) {
     state.view = options.view;
   }
   if (app.count("--size") > 0 && options.size != "window") {
-    const Size size = parse_size(options.size);
+    const FrameSize size = parse_frame_size(options.size, "--size");
     state.width = size.width;
     state.height = size.height;
   }
@@ -101,11 +102,11 @@ class ScratchShaders {
   std::filesystem::path root_;
 };
 
-int view(Options options, const cli::App& app) {
+int view(ViewArguments options, const cli::App& app) {
   options.viewer.state = initial_state(options, app);
   options.viewer.size_follows_window = options.size == "window";
   if (!options.window.empty()) {
-    const Size size = parse_size(options.window);
+    const FrameSize size = parse_frame_size(options.window, "--window");
     options.viewer.window_width = size.width;
     options.viewer.window_height = size.height;
   }
@@ -125,7 +126,7 @@ int view(Options options, const cli::App& app) {
 }  // namespace
 
 void add_view(cli::App& root, std::vector<Command>& commands) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ViewArguments>();
   ViewerOptions& viewer = options->viewer;
   cli::App* app = root.add_subcommand("view", "Open a window on a scene and change everything by hand");
   app->add_option("scene", options->scene,

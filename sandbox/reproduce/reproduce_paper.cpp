@@ -124,19 +124,11 @@ void draw_all_pictures(const PaperOptions& options, const std::filesystem::path&
   }
 }
 
-// The sweep that measures `spec`'s rows, in full or as a preview; null when the paper has none.
-const SweepOutcome* sweep_of(const PaperOutcome& outcome, const std::string& spec) {
-  for (const SweepOutcome& sweep : outcome.sweeps) {
-    if (sweep.name == spec || sweep.name == spec + "_preview") return &sweep;
-  }
-  return nullptr;
-}
-
 void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
   make_folder(folder / "tables");
   for (const std::string& name : sweeps::entry_names(*outcome.paper, "tables")) {
     const sweeps::PaperEntry entry{outcome.paper, name};
-    const SweepOutcome* sweep = sweep_of(outcome, sweeps::find_table(entry).spec);
+    const SweepOutcome* sweep = outcome.sweep_of(sweeps::find_table(entry).spec);
     const sweeps::Table table = sweeps::make_table(entry, sweep == nullptr ? std::vector<json>{} : sweep->rows);
     using enum sweeps::TableFormat;
     for (const auto& [format, extension] : {std::pair{markdown, ".md"}, std::pair{csv, ".csv"},
@@ -152,7 +144,7 @@ void write_figures(const std::filesystem::path& folder, PaperOutcome& outcome) {
     FigureOutcome figure{
         .name = drawn.full_name, .title = drawn.title, .doc = drawn.doc, .path = {}, .missing = {}, .repeat = {}};
     const bool worked_out = drawn.sweep.empty();
-    const SweepOutcome* sweep = worked_out ? nullptr : sweep_of(outcome, drawn.sweep);
+    const SweepOutcome* sweep = worked_out ? nullptr : outcome.sweep_of(drawn.sweep);
     if (sweep == nullptr && !worked_out) {
       figure.missing = fmt::format("the paper's sweeps have no {}", drawn.sweep);
     } else {

@@ -128,15 +128,8 @@ ReportTable sweep_table(const PaperOutcome& outcome) {
   return table;
 }
 
-const SweepOutcome* sweep_of(const PaperOutcome& outcome, const std::string& spec) {
-  for (const SweepOutcome& sweep : outcome.sweeps) {
-    if (sweep.name == spec || sweep.name == spec + "_preview") return &sweep;
-  }
-  return nullptr;
-}
-
 std::string store_option(const PaperOutcome& outcome, const std::string& spec) {
-  const SweepOutcome* sweep = sweep_of(outcome, spec);
+  const SweepOutcome* sweep = outcome.sweep_of(spec);
   return sweep == nullptr ? "" : " --store " + sweeps::shell_word(sweep->store);
 }
 
@@ -404,6 +397,13 @@ std::size_t SweepOutcome::failed() const {
 
 std::size_t SweepOutcome::unconverged() const {
   return count_points(*this, "timing", "unconverged");
+}
+
+const SweepOutcome* PaperOutcome::sweep_of(const std::string& spec) const {
+  for (const SweepOutcome& sweep : sweeps) {
+    if (sweep.name == spec || sweep.name == spec + "_preview") return &sweep;
+  }
+  return nullptr;
 }
 
 std::size_t PaperOutcome::failed() const {

@@ -61,6 +61,8 @@ struct PaperOutcome {
   std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, in order
   std::string device_option;                            ///< " --device N", or empty
   std::size_t failed() const;                           ///< points, and sets of pictures
+  /// The sweep that measures `spec`'s rows, in full or as a preview; null when the paper has none.
+  const SweepOutcome* sweep_of(const std::string& spec) const;
 };
 
 /// The page that shows them all.

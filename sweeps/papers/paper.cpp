@@ -80,7 +80,7 @@ PaperPointer parse(std::string_view text, const std::string& shown, bool built_i
                           paper->name));
   }
   root.text("title", paper->title, Need::required);
-  root.text("reference", paper->reference, built_in ? Need::required : Need::optional);
+  root.text("reference", paper->citation, built_in ? Need::required : Need::optional);
   root.text("source", paper->source);
   root.text("machine", paper->machine);
   paper->sweeps = read_sweeps(root, *paper);

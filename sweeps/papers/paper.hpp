@@ -22,9 +22,9 @@ struct PaperSweep {
 struct Paper {
   std::string name;  ///< snake_case: the module's folder, or a file's `name` (default: the file's, without .toml)
   std::string title;
-  std::string reference;  ///< key in references.bib; empty in a user's file that names none
-  std::string source;     ///< "Imagire et al. 2007", for captions
-  std::string machine;    ///< the authors': "GeForce 7800 GTX, 720 × 540"
+  std::string citation;  ///< key in references.bib; empty in a user's file that names none
+  std::string source;    ///< "Imagire et al. 2007", for captions
+  std::string machine;   ///< the authors': "GeForce 7800 GTX, 720 × 540"
   std::vector<PaperSweep> sweeps;
   std::vector<std::string> colours;  ///< techniques in the order of the palette, for all figures
   std::vector<Quantity> quantities;  ///< of this paper alone: worked out from others

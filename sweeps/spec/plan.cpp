@@ -16,6 +16,7 @@
 #include "algorithms/parameter_names.hpp"
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/files/hash.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "sweeps/spec/constraint.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/provenance.hpp"
@@ -153,7 +154,7 @@ class Expander {
         const SceneFacts& facts = known_names_.scene(scene);
         const std::vector<std::string> chosen = block.views.empty() ? std::vector{facts.views.front()} : block.views;
         for (const std::string& view : chosen) {
-          for (const Size& size : block.sizes) {
+          for (const FrameSize& size : block.sizes) {
             place(block, technique, scene, view, size);
             for (std::size_t i = 0; i < each; ++i)
               add_point(block, i);
@@ -198,7 +199,7 @@ class Expander {
 
   /// Works out what all points of one place share, so that a point costs little more than its hash.
   void place(const RunBlock& block, const std::string& technique, const std::string& scene, const std::string& view,
-             const Size& size) {
+             const FrameSize& size) {
     shared_ = Point{};
     shared_.technique = technique;
     shared_.scene = scene;

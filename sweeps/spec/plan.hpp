@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/scene/images/frame_size.hpp"
 #include "sweeps/spec/spec.hpp"
 
 namespace pellucid::sweeps {
@@ -16,7 +17,7 @@ namespace pellucid::sweeps {
 struct Point {
   std::string id;  ///< 16 hex digits; the same for the same measurement in any block and any spec
   std::string technique, scene, view;
-  Size size;
+  FrameSize size;
   std::map<std::string, Value> parameters;  ///< the technique's, `scene.…`, `frame.…` and `shadow.…`, every one
   std::vector<std::string> assigned;        ///< those that the spec gives, in order: axes, then fixed
   std::vector<std::string> metrics;

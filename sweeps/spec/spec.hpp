@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/scene/toml/toml_reader.hpp"
 #include "sweeps/spec/known_names.hpp"
 #include "sweeps/spec/reference_settings.hpp"
@@ -48,18 +49,13 @@ struct TimingLimits {
   double relative_ci = 0.005;  ///< half-width of the 95 % interval of the median over the median
 };
 
-struct Size {
-  int width = 720;
-  int height = 540;
-};
-
 /// One `[[run]]`.
 struct RunBlock {
   std::string name;
   std::vector<std::string> techniques;
   std::vector<std::string> scenes;
   std::vector<std::string> views;  ///< empty: each scene's first
-  std::vector<Size> sizes;
+  std::vector<FrameSize> sizes;
   std::vector<Axis> axes;
   std::vector<Walk> walks;  ///< every axis once; the axes of a walk have equally many values
   std::vector<FixedValue> fixed;

@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/scene/images/image.hpp"
 #include "gl/error.hpp"
 
@@ -92,21 +93,12 @@ AxisRange read_range(TableReader& reader) {
   return range;
 }
 
-Size read_size(const TableReader& reader, const PlacedText& size) {
-  const char* end = size.text.data() + size.text.size();
-  int width = 0;
-  int height = 0;
-  const auto [x, first] = std::from_chars(size.text.data(), end, width);
-  const bool has_width = first == std::errc{} && x != end && *x == 'x';
-  const auto [rest, second] = std::from_chars(has_width ? x + 1 : end, end, height);
-  if (!has_width || second != std::errc{} || rest != end)
-    reader.fail(size.at, fmt::format("size '{}' is not WIDTHxHEIGHT", size.text));
+FrameSize read_size(const TableReader& reader, const PlacedText& size) {
   try {
-    check_image_size(width, height, "size " + size.text);
+    return parse_frame_size(size.text, "size");
   } catch (const InputError& e) {
     reader.fail(size.at, e.what());
   }
-  return {width, height};
 }
 
 }  // namespace pellucid::sweeps

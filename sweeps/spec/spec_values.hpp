@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/scene/toml/toml_reader.hpp"
 #include "sweeps/spec/axis.hpp"
 #include "sweeps/spec/spec.hpp"
@@ -39,6 +40,6 @@ Value value_of(const TableReader&, const toml::node&, std::string_view name);
 /// `{ from, to, steps | log2 }`
 AxisRange read_range(TableReader&);
 /// WIDTHxHEIGHT
-Size read_size(const TableReader&, const PlacedText&);
+FrameSize read_size(const TableReader&, const PlacedText&);
 
 }  // namespace pellucid::sweeps

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "algorithms/scene/images/frame_size.hpp"
 #include "sweeps/measure/stopping.hpp"
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/spec/spec.hpp"
@@ -29,7 +30,7 @@ struct TuneOptions {
 /// One question: all settings of a spec in one scene, view and size.
 struct TuneGroup {
   std::string scene, view;
-  Size size;
+  FrameSize size;
   std::vector<std::size_t> points;  ///< of Plan::points
 };
 

@@ -16,13 +16,13 @@ namespace {
 
 using namespace pellucid::sweeps;
 
-struct Arguments {
+struct MergeArguments {
   std::string output, prefer;
   std::vector<std::string> inputs;
   bool as_json = false;
 };
 
-int merge(const Arguments& arguments) {
+int merge(const MergeArguments& arguments) {
   const Prefer prefer = arguments.prefer == "oldest"   ? Prefer::oldest
                         : arguments.prefer == "newest" ? Prefer::newest
                                                        : Prefer::neither;
@@ -48,7 +48,7 @@ int merge(const Arguments& arguments) {
 }  // namespace
 
 void add_sweep_merge(cli::App& sweep, std::vector<Command>& commands) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MergeArguments>();
   cli::App* app = sweep.add_subcommand("merge", "Join the stores of a sweep's shards, or of several devices, into one");
   app->add_option("output", arguments->output, "the store to add to; made when missing")->required();
   app->add_option("inputs", arguments->inputs, "stores, in any order")->required();

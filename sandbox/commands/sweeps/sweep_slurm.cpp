@@ -21,13 +21,13 @@ namespace {
 
 using namespace pellucid::sweeps;
 
-struct Arguments {
+struct SlurmArguments {
   SlurmOptions options;
   std::string spec, folder, references;
   bool dry_run = false;
 };
 
-int slurm(Arguments arguments) {
+int slurm(SlurmArguments arguments) {
   const Spec spec = load_spec(arguments.spec);
   const Plan plan = make_plan(spec);
   SlurmOptions& options = arguments.options;
@@ -59,7 +59,7 @@ int slurm(Arguments arguments) {
 }  // namespace
 
 void add_sweep_slurm(cli::App& sweep, std::vector<Command>& commands) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SlurmArguments>();
   SlurmOptions& options = arguments->options;
   cli::App* app = sweep.add_subcommand("slurm", "Run a sweep on a cluster: write Slurm batch scripts and submit them");
   app->add_option("spec", arguments->spec, "a file SPEC.toml, or the name of a built-in spec")->required();
