@@ -16,7 +16,7 @@
 namespace pellucid {
 namespace {
 
-struct Input {
+struct OpticsInput {
   glm::vec3 n;
   float cosine;
   glm::vec3 k;
@@ -24,7 +24,7 @@ struct Input {
   glm::vec3 absorption;
   float path;
 };
-struct Output {
+struct OpticsOutput {
   glm::vec3 metal;
   float dielectric;
   glm::vec3 transmitted;
@@ -32,13 +32,13 @@ struct Output {
 };
 
 // Every tenth at the ends of the cosine, every seventh an interface between equal media.
-std::vector<Input> inputs() {
+std::vector<OpticsInput> optics_inputs() {
   std::mt19937 random(17);
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
   const auto any = [&](float low, float high) { return low * std::pow(high / low, unit(random)); };
-  std::vector<Input> all;
+  std::vector<OpticsInput> all;
   for (int i = 0; i < 8192; ++i) {
-    Input q{};
+    OpticsInput q{};
     q.cosine = i % 10 == 0 ? 1.0F : i % 10 == 1 ? 0.0F : unit(random);
     q.eta = i % 7 == 0 ? 1.0F : any(0.2F, 5.0F);
     q.n = {any(0.01F, 20.0F), any(0.01F, 20.0F), any(0.01F, 20.0F)};
@@ -52,12 +52,12 @@ std::vector<Input> inputs() {
 
 TEST(OpticsTwins, AgreeOnRandomInterfaces) {
   const gl::Context context;
-  const std::vector<Input> in = inputs();
+  const std::vector<OpticsInput> in = optics_inputs();
   const gl::Program program("optics twins", {"tests/algorithms/optics.comp.glsl"});
-  const std::vector<Output> out = test::compute<Output>(program, in);
+  const std::vector<OpticsOutput> out = test::compute<OpticsOutput>(program, in);
   int total = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const Input& q = in[i];
+    const OpticsInput& q = in[i];
     const double cosine = static_cast<double>(q.cosine), eta = static_cast<double>(q.eta);
     // Near the critical angle the share rises with a square root: an error of one rounding in sin² counts as its root.
     const double behind2 = 1.0 - eta * eta * (1.0 - cosine * cosine);

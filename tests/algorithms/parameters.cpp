@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/input_error.hpp"
+
 namespace pellucid {
 namespace {
 
@@ -50,15 +52,6 @@ struct Undocumented {
 };
 static_assert(!well_formed<Undocumented>());
 
-std::string message(auto&& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
 TEST(Parameters, TableKeepsWhatWasDeclared) {
   const auto infos = parameter_table<Sample>().infos();
   ASSERT_EQ(infos.size(), 4U);
@@ -88,17 +81,19 @@ TEST(Parameters, AssignAndReadBack) {
 TEST(Parameters, ErrorsNameTheParameterItsRangeAndTheNearestName) {
   Sample sample;
   const ParameterRef ref = bind_parameters(sample);
-  EXPECT_EQ(message([&] { ref.assign("cuont", std::int64_t{1}, "sample"); }),
+  EXPECT_EQ(test::input_error([&] { ref.assign("cuont", std::int64_t{1}, "sample"); }),
             "unknown parameter 'cuont' of sample; did you mean 'count'?");
-  EXPECT_EQ(message([&] { ref.assign("zzzzzz", std::int64_t{1}, "sample"); }),
+  EXPECT_EQ(test::input_error([&] { ref.assign("zzzzzz", std::int64_t{1}, "sample"); }),
             "unknown parameter 'zzzzzz' of sample; it has flag, count, width, mode");
-  EXPECT_EQ(message([&] { ref.assign("count", std::int64_t{65}, "sample"); }),
+  EXPECT_EQ(test::input_error([&] { ref.assign("count", std::int64_t{65}, "sample"); }),
             "sample: count = 65 is out of range [1, 64]");
-  EXPECT_EQ(message([&] { ref.assign("count", 2.5, "sample"); }), "sample: count = 2.5 is not an integer in [1, 64]");
-  EXPECT_EQ(message([&] { ref.assign("width", std::nan(""), "sample"); }),
+  EXPECT_EQ(test::input_error([&] { ref.assign("count", 2.5, "sample"); }),
+            "sample: count = 2.5 is not an integer in [1, 64]");
+  EXPECT_EQ(test::input_error([&] { ref.assign("width", std::nan(""), "sample"); }),
             "sample: width = nan is out of range [0, 1]");
-  EXPECT_EQ(message([&] { ref.assign("flag", std::int64_t{1}, "sample"); }), "sample: flag = 1 is not true or false");
-  EXPECT_EQ(message([&] { ref.assign("mode", std::string("slwo"), "sample"); }),
+  EXPECT_EQ(test::input_error([&] { ref.assign("flag", std::int64_t{1}, "sample"); }),
+            "sample: flag = 1 is not true or false");
+  EXPECT_EQ(test::input_error([&] { ref.assign("mode", std::string("slwo"), "sample"); }),
             "sample: mode = 'slwo' is not one of slow, quick; did you mean 'slow'?");
   EXPECT_EQ(sample.count, 4) << "a refused value must not be stored";
 }
@@ -108,10 +103,10 @@ TEST(Parameters, TextIsReadWholeOrRefused) {
   const ParameterInfo& count = *table.find("count");
   EXPECT_EQ(std::get<std::int64_t>(parse_value(count, "12", "sample")), 12);
   for (const char* text : {"", "4x", "4.0", " 4", "0x4", "99999999999999999999"}) {
-    EXPECT_NE(message([&] { parse_value(count, text, "sample"); }), "no error") << "'" << text << "'";
+    EXPECT_NE(test::input_error([&] { parse_value(count, text, "sample"); }), "no error") << "'" << text << "'";
   }
   EXPECT_DOUBLE_EQ(std::get<double>(parse_value(*table.find("width"), "2.5e-1", "sample")), 0.25);
-  EXPECT_EQ(message([&] { parse_value(*table.find("width"), "inf", "sample"); }),
+  EXPECT_EQ(test::input_error([&] { parse_value(*table.find("width"), "inf", "sample"); }),
             "sample: width = inf is out of range [0, 1]");
 }
 

@@ -20,7 +20,7 @@
 namespace pellucid {
 namespace {
 
-struct Input {
+struct ShaderInput {
   float extinction, interval, step, offset;
   glm::vec3 s;
   float count;
@@ -29,12 +29,12 @@ struct Input {
   glm::vec3 ray;
   float opacity;
 };
-struct Output {
+struct ShaderOutput {
   float voxel, corrected, step, path, sample_at, half_way_behind, half_way_before, pad;
 };
 
 // Random media and paths, and with them every declared extreme of N and of the sample's place.
-std::vector<Input> inputs() {
+std::vector<ShaderInput> shader_inputs() {
   const auto infos = parameter_table<sampling_hulls::Parameters>().infos();
   auto bound = [&](std::string_view name, bool high) {
     for (const auto& p : infos) {
@@ -44,9 +44,9 @@ std::vector<Input> inputs() {
   };
   std::mt19937 random(11);
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-  std::vector<Input> all;
+  std::vector<ShaderInput> all;
   for (int k = 0; k < 4096; ++k) {
-    Input q{};
+    ShaderInput q{};
     q.extinction = k % 7 == 0 ? 0.0F : std::pow(10.0F, 6.0F * unit(random) - 4.0F);
     q.interval = std::pow(10.0F, 3.0F * unit(random) - 2.0F);
     q.step = k % 11 == 0 ? 0.0F : std::pow(10.0F, 4.0F * unit(random) - 3.0F);
@@ -66,12 +66,12 @@ std::vector<Input> inputs() {
 
 TEST(ShaderTwins, OpacityAndValidPath) {
   test::use_context();
-  const std::vector<Input> in = inputs();
+  const std::vector<ShaderInput> in = shader_inputs();
   const gl::Program program("twins", {"tests/algorithms/opacity.comp.glsl"});
-  const std::vector<Output> out = test::compute<Output>(program, in);
+  const std::vector<ShaderOutput> out = test::compute<ShaderOutput>(program, in);
   int clipped = 0, held_at_back = 0, held_at_front = 0;
   for (std::size_t k = 0; k < in.size(); ++k) {
-    const Input& q = in[k];
+    const ShaderInput& q = in[k];
     EXPECT_NEAR(out[k].voxel, voxel_opacity(q.extinction, q.interval), 2e-6) << k;
     EXPECT_NEAR(out[k].step, step_opacity(q.extinction, q.step), 2e-6) << k;
     // pow is exp2(r·log2(1 − α)): the logarithm's absolute error of a few 2^-22 counts r-fold.

@@ -19,19 +19,11 @@
 #include "gl/error.hpp"
 #include "plots/charts/svg_scene.hpp"
 #include "plots/charts/text_font.hpp"
+#include "tests/input_error.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {
 namespace {
-
-std::string message(auto&& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 // The elements and all text that expat finds in a document.
 struct Parsed {
@@ -106,14 +98,15 @@ TEST(Chart, EveryCharacterIsDrawnOrSpelledOut) {
 TEST(Chart, RefusesWhatCannotBeDrawn) {
   Chart empty = sample();
   empty.series.clear();
-  EXPECT_NE(message([&] { to_svg(empty); }), "no error");
+  test::input_error([&] { to_svg(empty); });
   Chart nan = sample();
   nan.series[1].points[1].y = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message([&] { to_svg(nan); }).find("second"), std::string::npos) << "the message names the series";
+  EXPECT_NE(test::input_error([&] { to_svg(nan); }).find("second"), std::string::npos)
+      << "the message names the series";
   Chart negative = sample();
   negative.series[0].points[0].y = -1;
-  EXPECT_NE(message([&] { to_svg(negative); }).find("first"), std::string::npos);
-  EXPECT_NE(message([&] { write_chart(sample(), "chart.gif"); }).find(".svg"), std::string::npos);
+  EXPECT_NE(test::input_error([&] { to_svg(negative); }).find("first"), std::string::npos);
+  EXPECT_NE(test::input_error([&] { write_chart(sample(), "chart.gif"); }).find(".svg"), std::string::npos);
 }
 
 TEST(Chart, TheLineReachesFromTheFirstPointToTheLastInsideThePlot) {
@@ -225,7 +218,7 @@ TEST(HeatMap, DrawsAndRefuses) {
   map.marks.clear();
   EXPECT_LT(parse(to_svg(map)).paths, paths);
   map.values[0][0] = std::numeric_limits<double>::infinity();
-  EXPECT_NE(message([&] { to_svg(map); }), "no error");
+  test::input_error([&] { to_svg(map); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/error.hpp"
+#include "tests/input_error.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -87,15 +88,6 @@ std::vector<json> shadow_rows() {
   return all;
 }
 
-std::string message(auto&& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
 class Figures : public testing::Test {
  protected:
   std::string draw(const std::string& name, const std::vector<json>& from) {
@@ -114,7 +106,7 @@ TEST_F(Figures, FollowTheData) {
 TEST_F(Figures, DevicesAreNeverPooled) {
   std::vector<json> mixed = rows();
   mixed.back()["device"] = "renderer B";
-  const std::string words = message([&] { draw("sampling_hulls.error_time", mixed); });
+  const std::string words = test::input_error([&] { draw("sampling_hulls.error_time", mixed); });
   EXPECT_NE(words.find("renderer A"), std::string::npos) << words;
   EXPECT_NE(words.find("renderer B"), std::string::npos) << words;
 }
@@ -164,7 +156,8 @@ TEST_F(Figures, ShadowChartsTakeTheirOwnFigureAlone) {
             draw("sampling_hulls.shadow_error_fig10", changed));
   EXPECT_NE(draw("sampling_hulls.shadow_error_fig11", shadow_rows()),
             draw("sampling_hulls.shadow_error_fig11", changed));
-  EXPECT_NE(message([&] { draw("sampling_hulls.shadow_error_fig10", rows()); }).find("fig10_hulls"), std::string::npos);
+  EXPECT_NE(test::input_error([&] { draw("sampling_hulls.shadow_error_fig10", rows()); }).find("fig10_hulls"),
+            std::string::npos);
 }
 
 TEST_F(Figures, FailedRowsAreLeftOutAndCounted) {
@@ -183,11 +176,12 @@ TEST_F(Figures, FailedRowsAreLeftOutAndCounted) {
                   {"driver", "driver 1"},
                   {"frame.format", "half"}});
   EXPECT_NE(draw("sampling_hulls.error", some), draw("sampling_hulls.error", rows())) << "the note tells";
-  EXPECT_NE(message([&] { draw("sampling_hulls.error", {some.back()}); }), "no error");
+  test::input_error([&] { draw("sampling_hulls.error", {some.back()}); });
 }
 
 TEST_F(Figures, UnknownNameSuggestsTheNearest) {
-  EXPECT_NE(message([] { find_figure("sampling_hulls.eror"); }).find("sampling_hulls.error"), std::string::npos);
+  EXPECT_NE(test::input_error([] { find_figure("sampling_hulls.eror"); }).find("sampling_hulls.error"),
+            std::string::npos);
 }
 
 }  // namespace

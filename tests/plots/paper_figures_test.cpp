@@ -20,6 +20,7 @@
 #include "plots/figures/figures.hpp"
 #include "sweeps/quantities/quantities.hpp"
 #include "sweeps/spec/spec.hpp"
+#include "tests/input_error.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace pellucid::plots {
@@ -45,12 +46,7 @@ sweep = "sampling_hulls_curves"
 }
 
 std::string error_of(const std::string& figure) {
-  try {
-    read_figures(paper_of(figure));
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
+  return test::input_error([&] { read_figures(paper_of(figure)); });
 }
 
 json row(int hulls, int samples, double ms, double flip, const char* extra = "half") {

@@ -11,6 +11,7 @@
 #include "gl/error.hpp"
 #include "plots/figures/figures.hpp"
 #include "plots/figures/row_chart.hpp"
+#include "tests/input_error.hpp"
 
 namespace pellucid::plots {
 namespace {
@@ -25,16 +26,6 @@ json row(const std::string& technique, json parameters) {
   out.update(parameters);
   out["point"] = out.dump();
   return out;
-}
-
-std::string message(auto&& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << "more than one line";
-    return e.what();
-  }
-  return "no error";
 }
 
 bool says(const std::string& words, std::initializer_list<const char*> parts) {
@@ -57,6 +48,12 @@ std::vector<json> slices() {
 }
 
 const std::vector<std::string> kFps{"fps"};
+
+std::string one_line_error(auto&& f) {
+  const std::string message = test::input_error(f);
+  EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line";
+  return message;
+}
 
 TEST(Rows, AreCountedByWhyTheyAreLeftOut) {
   std::vector<json> rows = slices();
@@ -90,14 +87,14 @@ TEST(Rows, ConditionsCompareNumbersByValueAndTextAsText) {
   const auto count = [&](std::vector<Where> conditions) { return choose_rows(slices(), conditions, {}).kept.size(); };
   EXPECT_EQ(count({{"slices", {"8.0"}}}), 2U);
   EXPECT_EQ(count({{"slices", {"8"}}, {"frame.format", {"single"}}}), 1U);
-  says(message([&] { count({{"slices", {"9"}}}); }), {"slices = 9", "'4'", "'8'", "'16'"});
-  says(message([&] { count({{"slises", {"8"}}}); }), {"slises", "'slices'"});
+  says(one_line_error([&] { count({{"slices", {"9"}}}); }), {"slices = 9", "'4'", "'8'", "'16'"});
+  says(one_line_error([&] { count({{"slises", {"8"}}}); }), {"slises", "'slices'"});
 }
 
 TEST(Rows, OfSeveralDriversAreRefused) {
   std::vector<json> rows = slices();
   rows.back()["driver"] = "2";
-  says(message([&] { choose_rows(rows, {}, kFps); }), {"driver", "'1'", "'2'"});
+  says(one_line_error([&] { choose_rows(rows, {}, kFps); }), {"driver", "'1'", "'2'"});
   const std::vector<Where> one{{"driver", {"2"}}};
   EXPECT_EQ(choose_rows(rows, one, kFps).kept.size(), 1U);
 }
@@ -126,8 +123,8 @@ TEST(Rows, MeasuredTwiceAreNeverPooled) {
   std::vector<json> rows = slices();
   rows.push_back(rows[0]);
   rows.back()["point"] = "again";
-  says(message([&] { draw_figure(find_figure("sampling_hulls.error"), rows); }), {"slices = 4", "again"});
-  says(message([&] { chart_of_rows(rows, {.x = {.field = "slices"}, .y = {.field = "fps"}}); }),
+  says(one_line_error([&] { draw_figure(find_figure("sampling_hulls.error"), rows); }), {"slices = 4", "again"});
+  says(one_line_error([&] { chart_of_rows(rows, {.x = {.field = "slices"}, .y = {.field = "fps"}}); }),
        {"slices = 4", "frame.format = half"});
 }
 
@@ -144,14 +141,15 @@ TEST(RowChart, ChoosesAxesThatShowSomething) {
 }
 
 TEST(RowChart, AsksForWhatItCannotDecide) {
-  says(message(
+  says(one_line_error(
            [] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .series = {"technique"}}); }),
        {"slices = 4", "frame.format = single", "--series", "--where"});
-  says(message([] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fsp"}}); }), {"'fsp'", "'fps'"});
-  says(
-      message([] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .series = {"colour"}}); }),
-      {"colour"});
-  says(message([] { chart_of_rows({}, {}); }), {"no rows"});
+  says(one_line_error([] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fsp"}}); }),
+       {"'fsp'", "'fps'"});
+  says(one_line_error(
+           [] { chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .series = {"colour"}}); }),
+       {"colour"});
+  says(one_line_error([] { chart_of_rows({}, {}); }), {"no rows"});
   EXPECT_EQ(
       chart_of_rows(slices(), {.x = {.field = "slices"}, .y = {.field = "fps"}, .where = {{"frame.format", {"half"}}}})
           .series.size(),

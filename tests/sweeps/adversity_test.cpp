@@ -88,7 +88,7 @@ class Adversity : public testing::Test {
   SweepSummary summary;
 };
 
-void sleep_ms(int ms) {
+void wait_ms(int ms) {
   std::this_thread::sleep_for(std::chrono::milliseconds(ms));
 }
 
@@ -107,9 +107,9 @@ TEST_F(Adversity, AClockThatIsSetMovesNoTime) {
   offsets.realtime_s = 0;
 
   std::thread somebody([] {
-    sleep_ms(200);
+    wait_ms(200);
     offsets.realtime_s = 3600.5;  // half a second more, since times are rounded up to be shown
-    sleep_ms(300);
+    wait_ms(300);
     offsets.realtime_s = -3600;
   });
   const std::string said = run("n = [1, 2, 3, 4]\nsleep_ms = [200]\n");
@@ -174,7 +174,7 @@ TEST_F(Adversity, AStoppedWorkerIsToldAndCostsItsPoint) {
 TEST_F(Adversity, AStoppedWorkerThatIsLetGoOnCostsNothing) {
   bool over = false;
   std::thread somebody([&] {
-    for (int i = 0; i < 300 && !over; ++i, sleep_ms(20)) {
+    for (int i = 0; i < 300 && !over; ++i, wait_ms(20)) {
       std::ifstream file("/proc/self/task/" + std::to_string(::getpid()) + "/children");
       for (pid_t child = 0; file >> child;) {
         std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
@@ -183,7 +183,7 @@ TEST_F(Adversity, AStoppedWorkerThatIsLetGoOnCostsNothing) {
         std::string state;
         stat >> number >> name >> state;
         if (state != "T") continue;
-        sleep_ms(1200);  // the parent is to notice first
+        wait_ms(1200);  // the parent is to notice first
         ::kill(child, SIGCONT);
         over = true;
       }

@@ -23,17 +23,17 @@ namespace {
 using test::FakeKnownNames;
 using test::input_error;
 
-const char* const kHead = "name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['forest']\n";
+const char* const kDesignHead = "name='s'\n[[run]]\nname='r'\ntechniques=['hulls']\nscenes=['forest']\n";
 
 Spec spec_of(const std::string& text) {
-  return parse_spec(kHead + text, "s.toml", FakeKnownNames());
+  return parse_spec(kDesignHead + text, "s.toml", FakeKnownNames());
 }
-Plan plan_of(const std::string& text) {
+Plan design_plan(const std::string& text) {
   const FakeKnownNames known_names;
   return make_plan(spec_of(text), known_names);
 }
-std::string error_of(const std::string& text) {
-  return input_error([&] { plan_of(text); });
+std::string design_error(const std::string& text) {
+  return input_error([&] { design_plan(text); });
 }
 
 /// How far the share of points in a corner box differs from its volume, at worst over a grid of boxes: a lower bound of
@@ -115,7 +115,7 @@ TEST(Design, IntegersAreEquallyLikelyAndRealsCanBeTyped) {
 }
 
 TEST(Design, DrawsTheRangesWithoutStepsAndGridsTheRest) {
-  const Plan plan = plan_of(
+  const Plan plan = design_plan(
       "design = { kind = 'latin_hypercube', count = 10, seed = 4 }\n[run.axes]\noffset = { from = 0, to = 1 }\n"
       "filter = [false, true]\nscene.density = { from = 0.1, to = 10, log2 = true }\n");
   ASSERT_EQ(plan.points.size(), 20U);
@@ -131,7 +131,8 @@ TEST(Design, DrawsTheRangesWithoutStepsAndGridsTheRest) {
 }
 
 TEST(Design, LeavesOutThePointsThatComeAgain) {
-  const Plan plan = plan_of("design = { kind = 'random', count = 100 }\n[run.axes]\nhulls = { from = 1, to = 4 }\n");
+  const Plan plan =
+      design_plan("design = { kind = 'random', count = 100 }\n[run.axes]\nhulls = { from = 1, to = 4 }\n");
   EXPECT_EQ(plan.points.size(), 4U);
   EXPECT_EQ(plan.members.size(), 4U);
   ASSERT_EQ(plan.skipped.size(), 1U);
@@ -141,20 +142,20 @@ TEST(Design, LeavesOutThePointsThatComeAgain) {
 
 TEST(Design, ErrorsNameThePlace) {
   EXPECT_EQ(
-      error_of("design = { kind = 'sobel', count = 4 }\n[run.axes]\nhulls={from=1,to=4}\n"),
+      design_error("design = { kind = 'sobel', count = 4 }\n[run.axes]\nhulls={from=1,to=4}\n"),
       "s.toml:6:19: run[0].design.kind = 'sobel' is not one of random, latin_hypercube, sobol; did you mean 'sobol'?");
-  EXPECT_EQ(error_of("design = { kind = 'sobol' }\n[run.axes]\nhulls={from=1,to=4}\n"),
+  EXPECT_EQ(design_error("design = { kind = 'sobol' }\n[run.axes]\nhulls={from=1,to=4}\n"),
             "s.toml:6:10: 'count' is missing in run[0].design");
-  EXPECT_EQ(error_of("design = { count = 4 }\n[run.axes]\nhulls=[1,4]\n"),
+  EXPECT_EQ(design_error("design = { count = 4 }\n[run.axes]\nhulls=[1,4]\n"),
             "s.toml:6:10: the design has no axis; one is a range of [run.axes] without `steps`: { from, to }");
-  EXPECT_EQ(error_of("design = { count = 4 }\n[run.axes]\nhulls={from=1,to=400}\n"),
+  EXPECT_EQ(design_error("design = { count = 4 }\n[run.axes]\nhulls={from=1,to=400}\n"),
             "s.toml:8:7: hulls: hulls = 400 is out of range [1, 64]");
-  EXPECT_EQ(error_of("design = { count = 4 }\n[run.axes]\nhulls={from=1.5,to=4}\n"),
+  EXPECT_EQ(design_error("design = { count = 4 }\n[run.axes]\nhulls={from=1.5,to=4}\n"),
             "s.toml:8:7: hulls: the range ends at 1.5, and hulls is an integer");
 }
 
 TEST(Zip, WalksWithinAGrid) {
-  const Plan plan = plan_of(
+  const Plan plan = design_plan(
       "zip = [['hulls', 'samples']]\n[run.axes]\nhulls = [1, 2, 4]\nfilter = [false, true]\nsamples = [32, 16, 8]\n");
   std::vector<std::string> values;
   for (const Point& point : plan.points) {
@@ -166,16 +167,17 @@ TEST(Zip, WalksWithinAGrid) {
 }
 
 TEST(Zip, ErrorsNameThePlace) {
-  EXPECT_EQ(error_of("zip = [['hulls', 'sample']]\n[run.axes]\nhulls=[1,2]\nsamples=[1,2]\n"),
+  EXPECT_EQ(design_error("zip = [['hulls', 'sample']]\n[run.axes]\nhulls=[1,2]\nsamples=[1,2]\n"),
             "s.toml:6:18: unknown axis 'sample'; did you mean 'samples'?");
-  EXPECT_EQ(error_of("zip = [['hulls', 'samples']]\n[run.axes]\nhulls=[1,2,3]\nsamples=[1,2]\n"),
+  EXPECT_EQ(design_error("zip = [['hulls', 'samples']]\n[run.axes]\nhulls=[1,2,3]\nsamples=[1,2]\n"),
             "s.toml:9:1: a zip needs axes of equal length: samples has 2 values, hulls has 3");
-  EXPECT_EQ(error_of("zip = [['hulls']]\n[run.axes]\nhulls=[1,2,3]\n"), "s.toml:6:8: a zip needs two axes at least");
-  EXPECT_EQ(error_of("zip = ['hulls', 'samples']\n[run.axes]\nhulls=[1,2,3]\nsamples=[1,2,3]\n"),
+  EXPECT_EQ(design_error("zip = [['hulls']]\n[run.axes]\nhulls=[1,2,3]\n"),
+            "s.toml:6:8: a zip needs two axes at least");
+  EXPECT_EQ(design_error("zip = ['hulls', 'samples']\n[run.axes]\nhulls=[1,2,3]\nsamples=[1,2,3]\n"),
             "s.toml:6:7: zip is a list of lists of axes, for example [[\"hulls\", \"samples\"]]");
-  EXPECT_EQ(error_of("zip = [['hulls', 'samples'], ['hulls', 'offset']]\n[run.axes]\nhulls=[1]\n"),
+  EXPECT_EQ(design_error("zip = [['hulls', 'samples'], ['hulls', 'offset']]\n[run.axes]\nhulls=[1]\n"),
             "s.toml:6:31: hulls is in a zip already");
-  EXPECT_EQ(error_of("combine = 'zip'\nzip = [['hulls', 'samples']]\n[run.axes]\nhulls=[1]\nsamples=[1]\n"),
+  EXPECT_EQ(design_error("combine = 'zip'\nzip = [['hulls', 'samples']]\n[run.axes]\nhulls=[1]\nsamples=[1]\n"),
             "s.toml:7:7: combine = \"zip\" zips all axes already");
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "sweeps/spec/known_names.hpp"
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/spec/spec.hpp"
+#include "tests/input_error.hpp"
 #include "tests/temporary_folder.hpp"
 
 /// Techniques and scenes that need no GL: what specs, plans and sweeps are tested with.
@@ -97,10 +97,8 @@ class FakeKnownNames final : public KnownNames {
   }
 };
 
+using pellucid::test::input_error;
 using pellucid::test::TemporaryFolder;
-
-/// The message of the InputError that `f` throws; fails the test when it throws none.
-std::string input_error(const std::function<void()>& f);
 
 /// True if a built-in spec cannot be read because its scenes' assets have not been fetched.
 bool lacks_assets(const std::string& spec);

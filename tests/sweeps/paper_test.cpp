@@ -12,6 +12,7 @@
 #include "algorithms/technique.hpp"
 #include "gl/error.hpp"
 #include "sweeps/metrics/metrics.hpp"
+#include "tests/input_error.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -19,12 +20,7 @@ namespace {
 using nlohmann::json;
 
 std::string error_of(std::string_view text) {
-  try {
-    parse_paper(text, "my.toml");
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
+  return pellucid::test::input_error([&] { parse_paper(text, "my.toml"); });
 }
 
 TEST(Paper, TheBuiltInOnesAreReadFromTheirModules) {

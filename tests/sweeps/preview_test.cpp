@@ -13,7 +13,7 @@ namespace {
 using test::FakeKnownNames;
 using test::input_error;
 
-const std::string kSpec = R"(name = "curves"
+const std::string kPreviewSpec = R"(name = "curves"
 metrics = ["flip", "rmse"]
 [timing]
 min_samples = 30
@@ -40,7 +40,7 @@ scenes = ["ball"]
 )";
 
 Spec parse(const std::string& overlay, Extent extent = Extent::preview) {
-  return parse_spec(kSpec + overlay, "s.toml", FakeKnownNames(), extent);
+  return parse_spec(kPreviewSpec + overlay, "s.toml", FakeKnownNames(), extent);
 }
 
 std::vector<std::string> texts(const Axis& axis) {

@@ -66,7 +66,7 @@ void expect_drift_in_sql(const std::filesystem::path& path) {
   for (; statement.step(); ++at) {
     ASSERT_LT(at, rows.size());
     const json& expected = rows[at].at("baseline_drift");
-    EXPECT_EQ(statement.text(3), rows[at].at("point"));
+    EXPECT_EQ(statement.text(3), rows[at].at("point").get<std::string>());
     EXPECT_EQ(statement.integer(1) != 0, expected.is_null()) << at;
     if (expected.is_null()) continue;
     EXPECT_NEAR(statement.real(0), expected.get<double>(), 1e-12) << at;

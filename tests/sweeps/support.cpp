@@ -1,4 +1,3 @@
-#include <functional>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -6,16 +5,6 @@
 #include "tests/sweeps/fake_known_names.hpp"
 
 namespace pellucid::sweeps::test {
-
-std::string input_error(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no InputError";
-  return "";
-}
 
 bool lacks_assets(const std::string& spec) {
   try {

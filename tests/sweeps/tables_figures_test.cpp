@@ -13,6 +13,7 @@
 #include "sweeps/spec/plan.hpp"
 #include "sweeps/tables/tables.hpp"
 #include "tests/sweeps/fake_known_names.hpp"
+#include "tests/sweeps/table_texts.hpp"
 
 namespace pellucid::sweeps::test {
 namespace {
@@ -39,25 +40,6 @@ json timed(json fields, double frame_ms) {
   fields["frames"] = 30;
   fields["clock"] = "gpu_query";
   return fields;
-}
-
-Words texts(const Table& table, const std::string& label) {
-  for (const TableRow& r : table.rows) {
-    if (r.label != label) continue;
-    Words result;
-    for (const TableCell& cell : r.cells)
-      result.push_back(cell.text);
-    return result;
-  }
-  std::string labels;
-  for (const TableRow& r : table.rows)
-    labels += "'" + r.label + "' ";
-  throw std::runtime_error("no row " + label + " among " + labels);
-}
-
-bool noted(const Table& table, const std::string& part) {
-  return std::any_of(table.notes.begin(), table.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
 
 // ---- Figs. 8 to 11 ----

@@ -9,8 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "sweeps/tables/tables.hpp"
+#include "tests/sweeps/table_texts.hpp"
 
-namespace pellucid::sweeps {
+namespace pellucid::sweeps::test {
 namespace {
 
 using nlohmann::json;
@@ -38,13 +39,6 @@ json row(const char* sweep, const char* block, const char* technique, const char
            {"dirty", false}};
   out.update(values);
   return out;
-}
-
-const TableRow& row_of(const Table& table, std::string_view label) {
-  for (const TableRow& r : table.rows) {
-    if (r.label == label) return r;
-  }
-  throw std::logic_error("no row " + std::string(label));
 }
 
 TEST(GeocubeTables, Table2PutsOursBesideThePapers) {
@@ -153,4 +147,4 @@ TEST(ImpostorTables, RatesGiveTheRangeThatThePaperNames) {
 }
 
 }  // namespace
-}  // namespace pellucid::sweeps
+}  // namespace pellucid::sweeps::test

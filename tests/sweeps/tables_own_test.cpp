@@ -6,6 +6,7 @@
 
 #include "gl/error.hpp"
 #include "sweeps/tables/tables.hpp"
+#include "tests/input_error.hpp"
 
 namespace pellucid::sweeps {
 namespace {
@@ -28,12 +29,7 @@ PaperEntry entry(const std::string& table) {
 }
 
 std::string error_of(const std::string& table) {
-  try {
-    make_table(entry(table), {});
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
+  return pellucid::test::input_error([&] { make_table(entry(table), {}); });
 }
 
 json row(int hulls, int samples, double fps, double flip, const char* block = "a") {

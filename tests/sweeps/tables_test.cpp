@@ -15,6 +15,7 @@
 
 #include "sweeps/spec/plan.hpp"
 #include "tests/sweeps/fake_known_names.hpp"
+#include "tests/sweeps/table_texts.hpp"
 
 namespace pellucid::sweeps::test {
 namespace {
@@ -58,25 +59,6 @@ json measured(int hulls, int samples, double frame_ms) {
 std::vector<json> all_measured() {
   return {measured(1, 32, 10), measured(2, 16, 8), measured(4, 8, 5),
           measured(8, 4, 6),   measured(16, 2, 7), measured(32, 1, 20)};
-}
-
-const TableRow& row_of(const Table& table, const std::string& label) {
-  for (const TableRow& row : table.rows) {
-    if (row.label == label) return row;
-  }
-  throw std::runtime_error("no row " + label);
-}
-
-std::vector<std::string> texts(const Table& table, const std::string& label) {
-  std::vector<std::string> result;
-  for (const TableCell& cell : row_of(table, label).cells)
-    result.push_back(cell.text);
-  return result;
-}
-
-bool noted(const Table& table, const std::string& part) {
-  return std::any_of(table.notes.begin(), table.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
 
 using Words = std::vector<std::string>;

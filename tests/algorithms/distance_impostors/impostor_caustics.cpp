@@ -56,10 +56,10 @@ Scene box_room(const Material& material) {
                   .far_m = 20}};
   return scene;
 }
-Material glass(float ior = 1.3F) {
+Material caustic_glass(float ior = 1.3F) {
   return {.name = "glass", .kind = SurfaceKind::dielectric, .ior = ior};
 }
-Material mirror() {
+Material caustic_mirror() {
   return {.name = "mirror", .kind = SurfaceKind::mirror};
 }
 
@@ -75,7 +75,7 @@ nlohmann::json errors_of(Scene scene, const Values& values) {
 }
 
 TEST(Caustics, TheLightThatLandsAgreesWithPhotonTracing) {
-  for (const Material& material : {glass(), glass(1.6F), mirror()}) {
+  for (const Material& material : {caustic_glass(), caustic_glass(1.6F), caustic_mirror()}) {
     const nlohmann::json errors = errors_of(box_room(material), {{"cube_size", "256"}, {"caustic_size", "128"}});
     EXPECT_NEAR(errors.at("caustic_energy_ratio").get<double>(), 1, 0.02) << material.name << " " << material.ior;
     EXPECT_LT(errors.at("caustic_reference_standard_error_w").get<double>(),
@@ -85,13 +85,13 @@ TEST(Caustics, TheLightThatLandsAgreesWithPhotonTracing) {
 
 // Whatever kind of light sends it.
 TEST(Caustics, DirectionalLightsAndSpotsSendAsMuch) {
-  Scene spot = box_room(glass());
+  Scene spot = box_room(caustic_glass());
   spot.lights[0].kind = LightKind::spot;
   spot.lights[0].direction = glm::normalize(glm::vec3(0.5F, -2.5F, -0.1F));
   spot.lights[0].inner_angle_deg = 5;
   spot.lights[0].outer_angle_deg = 14;  // a part of the ball
   EXPECT_NEAR(errors_of(std::move(spot), {{"caustic_size", "128"}}).at("caustic_energy_ratio").get<double>(), 1, 0.02);
-  Scene sun = box_room(glass());
+  Scene sun = box_room(caustic_glass());
   sun.instances.erase(sun.instances.begin() + 1);  // through the open ceiling
   sun.lights[0].kind = LightKind::directional;
   sun.lights[0].direction = glm::normalize(glm::vec3(0.2F, -1, 0.1F));
@@ -99,7 +99,7 @@ TEST(Caustics, DirectionalLightsAndSpotsSendAsMuch) {
 }
 
 TEST(Caustics, AnOccluderKeepsPhotonsFromTheObject) {
-  Scene shaded = box_room(glass());
+  Scene shaded = box_room(caustic_glass());
   // A plate half across the way of the light.
   shaded.meshes.push_back(make_plane({0.5F, 2}, 1));
   shaded.instances.insert(shaded.instances.begin(),
@@ -107,7 +107,7 @@ TEST(Caustics, AnOccluderKeepsPhotonsFromTheObject) {
                            .mesh = 2,
                            .material = 0,
                            .to_world = glm::translate(glm::mat4(1), glm::vec3(-0.5F, 0.3F, 0.2F))});
-  const double open = errors_of(box_room(glass()), {}).at("caustic_landed_w").get<double>();
+  const double open = errors_of(box_room(caustic_glass()), {}).at("caustic_landed_w").get<double>();
   const nlohmann::json errors = errors_of(std::move(shaded), {{"caustic_size", "128"}});
   EXPECT_LT(errors.at("caustic_landed_w").get<double>(), 0.8 * open);
   EXPECT_GT(errors.at("caustic_landed_w").get<double>(), 0.1 * open);
@@ -137,7 +137,7 @@ std::unique_ptr<Landed> land(const Scene& scene, const distance_impostors::Caust
 }
 
 TEST(Caustics, WidthAndResolutionDoNotChangeThePower) {
-  const Scene scene = box_room(glass());
+  const Scene scene = box_room(caustic_glass());
   const auto landed = [&](int map_size, int light_map_size, float sigma) {
     return land(scene, {.enabled = true, .map_size = map_size, .light_map_size = light_map_size, .sigma_texels = sigma})
         ->caustics.landed_w();
@@ -153,7 +153,7 @@ TEST(Caustics, WidthAndResolutionDoNotChangeThePower) {
 
 // The light maps' irradiance, times the area of a texel, is the power; and each wall gets what photon tracing gives it.
 TEST(Caustics, EachReceiverGetsItsShare) {
-  const Scene scene = box_room(glass());
+  const Scene scene = box_room(caustic_glass());
   const auto landed = land(scene, {.enabled = true, .map_size = 256, .light_map_size = 128});
   const distance_impostors::Caustics& caustics = landed->caustics;
   const std::vector<float> texels = caustics.light_maps().read();
@@ -178,17 +178,17 @@ TEST(Caustics, EachReceiverGetsItsShare) {
 
 // A lamp of no power, one in the object and one that touches it: nothing that is no number, and a warning.
 TEST(Caustics, LampsThatHaveNoCausticLeaveNone) {
-  Scene dark = box_room(glass());
+  Scene dark = box_room(caustic_glass());
   dark.lights[0].intensity = glm::vec3(0);
   EXPECT_EQ(errors_of(std::move(dark), {}).at("caustic_landed_w").get<double>(), 0);
   for (const float away : {0.0F, 0.3F, 0.505F}) {
-    Scene scene = box_room(glass());
+    Scene scene = box_room(caustic_glass());
     scene.lights[0].position = glm::vec3(0.2F, -0.9F + away, 0.1F);
     const nlohmann::json errors = errors_of(std::move(scene), {});
     EXPECT_EQ(errors.at("caustic_landed_w").get<double>(), 0) << away;
     EXPECT_NE(errors.at("warnings").get<std::string>().find("'lamp' lies in 'ball'"), std::string::npos);
   }
-  Scene bright = box_room(glass());
+  Scene bright = box_room(caustic_glass());
   bright.lights[0].casts_shadow = false;
   EXPECT_NE(errors_of(std::move(bright), {}).at("warnings").get<std::string>().find("no caustic"), std::string::npos);
 }

@@ -19,7 +19,7 @@ namespace {
 
 using test::Settings;
 
-Scene glass_scene(Mesh mesh) {
+Scene map_scene(Mesh mesh) {
   ::setenv("PELLUCID_CACHE", "off", 1);
   Scene scene;
   scene.name = "glass";
@@ -34,7 +34,7 @@ Scene glass_scene(Mesh mesh) {
   return scene;
 }
 
-Settings settings(const test::Values& values, int width = 120, int height = 90) {
+Settings map_settings(const test::Values& values, int width = 120, int height = 90) {
   Settings s;
   s.technique = "geocube";
   s.width = width;
@@ -71,7 +71,7 @@ Told told(Scene scene, const Settings& s) {
 }
 
 TEST(GeocubeMaps, AreWhatTheStatisticsSummarise) {
-  const Told t = told(glass_scene(make_torus(0.8F, 0.3F, 48)), settings({{"cubes", "2"}, {"iterations", "4"}}));
+  const Told t = told(map_scene(make_torus(0.8F, 0.3F, 48)), map_settings({{"cubes", "2"}, {"iterations", "4"}}));
   std::set<std::string> names;
   for (const NativeMap& map : t.maps) {
     names.insert(map.name);
@@ -104,9 +104,9 @@ TEST(GeocubeMaps, AreWhatTheStatisticsSummarise) {
 
 TEST(GeocubeMaps, StandAsThePictureDoes) {
   // The ball lies left of the middle and above it.
-  Scene scene = glass_scene(make_sphere(0.5F, 64));
+  Scene scene = map_scene(make_sphere(0.5F, 64));
   scene.instances[0].to_world = glm::translate(glm::mat4(1.0F), {-0.9F, 0.6F, 0.0F});
-  RenderSession session = test::start(std::move(scene), settings({{"cubes", "1"}, {"show", "length"}}));
+  RenderSession session = test::start(std::move(scene), map_settings({{"cubes", "1"}, {"show", "length"}}));
   const Told t = told(session);
   const Image image = session.read_color();
   const Image& map = t.map("exit_error").values;
@@ -125,8 +125,9 @@ TEST(GeocubeMaps, StandAsThePictureDoes) {
 }
 
 TEST(GeocubeMaps, OfABallAreSmallEverywhere) {
-  const Told t = told(glass_scene(make_sphere(1.0F, 200)),
-                      settings({{"cubes", "1"}, {"placement", "middle"}, {"resolution", "64"}, {"iterations", "40"}}));
+  const Told t =
+      told(map_scene(make_sphere(1.0F, 200)),
+           map_settings({{"cubes", "1"}, {"placement", "middle"}, {"resolution", "64"}, {"iterations", "40"}}));
   EXPECT_LT(t.errors.at("exit_error_mean"), 5e-4);
   EXPECT_LT(t.errors.at("exit_error_max"), 0.01);
   EXPECT_LT(t.errors.at("length_error_q95"), 2e-3);
@@ -148,9 +149,9 @@ TEST(GeocubeMaps, AreEmptyBeforeTheFirstFrameAndPromisedByWhoHasThem) {
 }
 
 TEST(GeocubeMaps, KeepTheBackgroundEmptyWhereNothingIsGlass) {
-  Scene scene = glass_scene(make_sphere(1.0F, 32));
+  Scene scene = map_scene(make_sphere(1.0F, 32));
   scene.materials[0].kind = SurfaceKind::mirror;
-  const Told t = told(std::move(scene), settings({}));
+  const Told t = told(std::move(scene), map_settings({}));
   for (const NativeMap& map : t.maps) {
     for (const float v : map.values.pixels)
       ASSERT_FALSE(std::isfinite(v)) << map.name;
@@ -161,10 +162,10 @@ TEST(GeocubeMaps, KeepTheBackgroundEmptyWhereNothingIsGlass) {
 // ---- cubes by hand ----
 
 TEST(GeocubeByHand, TakesTheFirstOfTheScenesCubes) {
-  Scene ring = glass_scene(make_torus(0.8F, 0.3F, 48));
+  Scene ring = map_scene(make_torus(0.8F, 0.3F, 48));
   ring.instances[0].cubes = {{0.8F, 0, 0}, {-0.4F, 0, 0.69F}, {-0.4F, 0, -0.69F}};
   RenderSession session = test::start(
-      std::move(ring), settings({{"placement", "hand"}, {"cubes", "3"}, {"switches", "2"}, {"iterations", "40"}}));
+      std::move(ring), map_settings({{"placement", "hand"}, {"cubes", "3"}, {"switches", "2"}, {"iterations", "40"}}));
   const Told three = told(session);
   EXPECT_EQ(three.errors.at("cubes_placed"), 3);
   session.assign_text("cubes", "1");
@@ -179,23 +180,23 @@ TEST(GeocubeByHand, TakesTheFirstOfTheScenesCubes) {
 }
 
 TEST(GeocubeByHand, FollowsAPlaceThatTheSceneMoves) {
-  const Settings s = settings({{"placement", "hand"}});
-  Scene scene = glass_scene(make_star({}, 60));
+  const Settings s = map_settings({{"placement", "hand"}});
+  Scene scene = map_scene(make_star({}, 60));
   scene.instances[0].cubes = {{0.0F, 0.0F, 0.0F}};
   RenderSession session = test::start(std::move(scene), s);
   const Told before = told(session);
   session.scene().instances[0].cubes = {{0.5F, 0.0F, 0.0F}};
   const Told moved = told(session);
   EXPECT_NE(before.errors.at("exit_error_mean"), moved.errors.at("exit_error_mean"));
-  Scene there = glass_scene(make_star({}, 60));
+  Scene there = map_scene(make_star({}, 60));
   there.instances[0].cubes = {{0.5F, 0.0F, 0.0F}};
   EXPECT_EQ(told(std::move(there), s).errors.at("exit_error_mean"), moved.errors.at("exit_error_mean"));
 }
 
 TEST(GeocubeByHand, LiesInTheMeshsSpaceHoweverTheInstanceStands) {
-  const Settings s = settings({{"placement", "hand"}});
+  const Settings s = map_settings({{"placement", "hand"}});
   const auto scene = [](const glm::vec3& scale) {
-    Scene out = glass_scene(make_sphere(1.0F, 64));
+    Scene out = map_scene(make_sphere(1.0F, 64));
     out.instances[0].cubes = {{0.9F, 0.0F, 0.0F}};
     out.instances[0].to_world =
         glm::scale(glm::rotate(glm::translate(glm::mat4(1.0F), {0.1F, 0, 0}), 0.7F, glm::vec3(0, 1, 0)), scale);
@@ -208,11 +209,11 @@ TEST(GeocubeByHand, LiesInTheMeshsSpaceHoweverTheInstanceStands) {
 
 TEST(GeocubeByHand, TellsWhatIsMissingOrMisplaced) {
   const auto message = [](std::vector<glm::vec3> cubes) {
-    Scene scene = glass_scene(make_sphere(1.0F, 32));
+    Scene scene = map_scene(make_sphere(1.0F, 32));
     scene.instances[0].name = "vase";
     scene.instances[0].cubes = std::move(cubes);
     try {
-      told(std::move(scene), settings({{"placement", "hand"}}));
+      told(std::move(scene), map_settings({{"placement", "hand"}}));
     } catch (const InputError& e) {
       return std::string(e.what());
     }
@@ -233,7 +234,7 @@ TEST(GlassStar, IsSeenByOneCube) {
   for (const char* placement : {"middle", "hand", "automatic"}) {
     const Told t =
         told(load_scene("glass_star"),
-             settings({{"cubes", "1"}, {"placement", placement}, {"resolution", "64"}, {"iterations", "20"}}));
+             map_settings({{"cubes", "1"}, {"placement", placement}, {"resolution", "64"}, {"iterations", "20"}}));
     EXPECT_LT(t.errors.at("unseen_share"), 0.001) << placement;
     EXPECT_LT(t.errors.at("exit_error_mean"), 0.003) << placement;
     EXPECT_LT(t.errors.at("bounded_share"), 0.01) << placement;

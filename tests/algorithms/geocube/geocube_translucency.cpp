@@ -53,7 +53,7 @@ void light_from_behind(Scene& scene, double width) {
   scene.environment.image = std::move(image);
 }
 
-Settings settings(const test::Values& values) {
+Settings scattering_settings(const test::Values& values) {
   Settings s;
   s.technique = "geocube";
   s.width = s.height = 96;
@@ -66,7 +66,7 @@ Settings settings(const test::Values& values) {
 TEST(GeocubeTranslucency, ABallThatAbsorbsNothingVanishesInAFurnace) {
   // Where the clear ball is darker, at its limb, the light is lost by `reflections`, and what scatters loses it there
   // too.
-  const Image clear = frame(ball(glm::vec3(0)), settings({{"reflections", "16"}}));
+  const Image clear = frame(ball(glm::vec3(0)), scattering_settings({{"reflections", "16"}}));
   int left_out = 0;
   for (int y = 0; y < clear.height; ++y) {
     for (int x = 0; x < clear.width; ++x)
@@ -75,7 +75,7 @@ TEST(GeocubeTranslucency, ABallThatAbsorbsNothingVanishesInAFurnace) {
   EXPECT_LT(left_out, clear.width * clear.height / 20);
   for (const char* transfer : {"gaussian", "unscattered", "two_gaussians"}) {
     for (const glm::vec3 scattering : {glm::vec3(0.05F), glm::vec3(1.0F, 3.0F, 0.2F), glm::vec3(60.0F)}) {
-      const Image image = frame(ball(scattering), settings({{"transfer", transfer}, {"reflections", "16"}}));
+      const Image image = frame(ball(scattering), scattering_settings({{"transfer", transfer}, {"reflections", "16"}}));
       for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
           if (clear.at(x, y)[1] < 0.998F) continue;
@@ -93,10 +93,11 @@ TEST(GeocubeTranslucency, BeginsWhereTheTransparentPictureIs) {
     light_from_behind(s, 0.2);
     return s;
   };
-  const Image clear = frame(scene(0), settings({}));
+  const Image clear = frame(scene(0), scattering_settings({}));
   for (const char* transfer : {"gaussian", "unscattered", "two_gaussians"}) {
     // A thousandth of a metre⁻¹ scatters 0.2 % of the light over the longest way.
-    EXPECT_LT(difference(frame(scene(0.001F), settings({{"transfer", transfer}})), clear).mean, 0.004) << transfer;
+    EXPECT_LT(difference(frame(scene(0.001F), scattering_settings({{"transfer", transfer}})), clear).mean, 0.004)
+        << transfer;
   }
 }
 
@@ -104,7 +105,7 @@ TEST(GeocubeTranslucency, HasNoJumpOnItsWayToOpaque) {
   // One session, and an albedo that stays, so that cubes and transfer functions are made once.
   Scene scene = ball(glm::vec3(0));
   light_from_behind(scene, 0.2);
-  RenderSession session = test::start(std::move(scene), settings({}));
+  RenderSession session = test::start(std::move(scene), scattering_settings({}));
   const auto at = [&](float scattering) {
     Material& medium = session.scene().materials[0];
     medium.scattering = glm::vec3(scattering);
@@ -133,7 +134,7 @@ TEST(GeocubeTranslucency, ALampBlursWithTheThicknessAsTheSlabPredictsAndStaysSha
     scene.materials[0].ior = 1.001F;
     const auto aside = static_cast<float>(std::sqrt(1 - 0.25 * length * length));
     scene.views[0] = {.name = "front", .eye = {aside, 0, 4}, .target = {aside, 0, 0}, .fov_y_deg = 0.5F};
-    Settings s = settings({{"transfer", "two_gaussians"}, {"resolution", "64"}, {"face_size", "256"}});
+    Settings s = scattering_settings({{"transfer", "two_gaussians"}, {"resolution", "64"}, {"face_size", "256"}});
     s.width = s.height = 5;
 
     const scattering::SlabLight light = slab.light(kScattering * length);
@@ -171,7 +172,7 @@ TEST(GeocubeTranslucency, AColouredMediumIsItsChannels) {
   const auto picture = [](const glm::vec3& scattering) {
     Scene s = ball(scattering, 0.85F, glm::vec3(0.2F));
     light_from_behind(s, 0.3);
-    return frame(std::move(s), settings({{"transfer", "unscattered"}}));
+    return frame(std::move(s), scattering_settings({{"transfer", "unscattered"}}));
   };
   const Image coloured = picture({0.5F, 2.0F, 6.0F});
   const Image grey[] = {picture(glm::vec3(0.5F)), picture(glm::vec3(2.0F)), picture(glm::vec3(6.0F))};
@@ -186,7 +187,7 @@ TEST(GeocubeTranslucency, AColouredMediumIsItsChannels) {
 TEST(GeocubeTranslucency, IsNearerToThePathTracedTruthThanTheClearFrame) {
   Scene scene = ball(glm::vec3(1.0F), 0.9F);
   light_from_behind(scene, 0.25);
-  const Settings s = settings({{"transfer", "unscattered"}});
+  const Settings s = scattering_settings({{"transfer", "unscattered"}});
   Camera camera;
   camera.view = scene.views.front();
   camera.width = s.width;
@@ -204,7 +205,7 @@ TEST(GeocubeTranslucency, IsNearerToThePathTracedTruthThanTheClearFrame) {
 TEST(GeocubeTranslucency, TellsWhatItsMapsTake) {
   Scene scene = ball(glm::vec3(1.0F));
   light_from_behind(scene, 0.25);
-  RenderSession session = test::start(std::move(scene), settings({}));
+  RenderSession session = test::start(std::move(scene), scattering_settings({}));
   gl::PassTimer timer;
   session.render(timer);
   nlohmann::json out;
@@ -216,7 +217,7 @@ TEST(GeocubeTranslucency, TellsWhatItsMapsTake) {
 TEST(GeocubeTranslucency, RefusesFaceSizesThatAreNoPowerOfTwo) {
   Scene scene = ball(glm::vec3(1.0F));
   light_from_behind(scene, 0.25);
-  EXPECT_THROW(frame(std::move(scene), settings({{"face_size", "100"}})), InputError);
+  EXPECT_THROW(frame(std::move(scene), scattering_settings({{"face_size", "100"}})), InputError);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "gl/error.hpp"
 #include "tests/algorithms/scenes.hpp"
+#include "tests/input_error.hpp"
 
 namespace pellucid {
 namespace {
@@ -22,12 +23,7 @@ Scene scene_with_two_views() {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    view_of(scene_with_two_views(), text);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
+  return test::input_error([&] { view_of(scene_with_two_views(), text); });
 }
 
 TEST(ViewText, ReadsBackBitForBit) {

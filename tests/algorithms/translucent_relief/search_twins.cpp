@@ -19,7 +19,7 @@
 namespace pellucid {
 namespace {
 
-struct Input {
+struct SearchInput {
   glm::vec3 origin;
   float begin;
   glm::vec3 direction;
@@ -27,18 +27,18 @@ struct Input {
   glm::vec2 uv;
   float side, steps, refinements, pad[3];
 };
-struct Output {
+struct SearchOutput {
   float linear, taken, max_mip, cone;
 };
 
 constexpr int kTexels = 32;
 
-std::vector<Input> inputs() {
+std::vector<SearchInput> search_inputs() {
   std::mt19937 random(29);
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-  std::vector<Input> all;
+  std::vector<SearchInput> all;
   for (int i = 0; i < 4096; ++i) {
-    Input q{};
+    SearchInput q{};
     q.side = i % 3 == 0 ? -1.0F : 1.0F;
     q.origin = {0.0F, 0.0F, q.side > 0 ? 0.0F : -0.3F};
     q.direction = glm::normalize(glm::vec3(unit(random) - 0.5F, unit(random) - 0.5F, -q.side * (0.05F + unit(random))));
@@ -52,7 +52,7 @@ std::vector<Input> inputs() {
   return all;
 }
 
-ReliefRay ray_of(const Input& q) {
+ReliefRay ray_of(const SearchInput& q) {
   return {glm::dvec3(q.origin), glm::dvec3(q.direction), glm::dvec2(q.uv), glm::dvec2(1.0)};
 }
 
@@ -76,19 +76,19 @@ class ReliefSearch : public testing::Test {
     cones.upload(translucent_relief::cone_map(field).pixels);
     cones.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
     cones.bind(5);
-    in = inputs();
-    out = test::compute<Output>(gl::Program("relief search", {"tests/algorithms/relief_search.comp.glsl"}), in);
+    in = search_inputs();
+    out = test::compute<SearchOutput>(gl::Program("relief search", {"tests/algorithms/relief_search.comp.glsl"}), in);
   }
   inline static ReliefLayer layer;
-  inline static std::vector<Input> in;
-  inline static std::vector<Output> out;
+  inline static std::vector<SearchInput> in;
+  inline static std::vector<SearchOutput> out;
 };
 
 TEST_F(ReliefSearch, EqualStepsAgreeWithTheirTwin) {
   const HeightField exact(layer, glm::dvec2(1.0));
   int hits = 0, differ = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const Input& q = in[i];
+    const SearchInput& q = in[i];
     const ReliefRay ray = ray_of(q);
     const auto crossing = translucent_relief::linear_crossing(
         [&](float t) {
@@ -109,7 +109,7 @@ TEST_F(ReliefSearch, ThePyramidIsExact) {
   const HeightField exact(layer, glm::dvec2(1.0));
   int hits = 0, differ = 0, asked = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const Input& q = in[i];
+    const SearchInput& q = in[i];
     const ReliefRay ray = ray_of(q);
     const double begin = static_cast<double>(q.begin), end = static_cast<double>(q.end);
     const double start = static_cast<double>(q.side) * (ray.at(begin).z - exact.height_m(ray.uv_at(begin)));
@@ -128,7 +128,7 @@ TEST_F(ReliefSearch, ConesStopAtTheSurface) {
   const HeightField exact(layer, glm::dvec2(1.0));
   int hits = 0, missed = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const Input& q = in[i];
+    const SearchInput& q = in[i];
     if (q.side < 0) continue;
     const ReliefRay ray = ray_of(q);
     const double begin = static_cast<double>(q.begin), end = static_cast<double>(q.end);

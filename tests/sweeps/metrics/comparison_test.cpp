@@ -12,6 +12,7 @@
 
 #include "gl/error.hpp"
 #include "sweeps/metrics/metrics.hpp"
+#include "tests/input_error.hpp"
 #include "tests/sweeps/metrics/pictures.hpp"
 
 namespace pellucid::sweeps {
@@ -28,16 +29,6 @@ ComparisonOptions options(const std::vector<std::string>& metrics, bool display_
 
 double value(const Image& reference, const Image& test, const std::string& metric, bool display_encoded = false) {
   return Comparison(reference, nullptr, options({metric}, display_encoded)).compare(test).at(metric);
-}
-
-/// The message of the InputError that `work` throws.
-std::string message(const auto& work) {
-  try {
-    work();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
@@ -102,8 +93,10 @@ TEST(Metrics, TheSetKeepsItsOrderAndKnowsItsNames) {
   EXPECT_EQ(MetricSet().names(), metric_names());
   EXPECT_TRUE(MetricSet().has("smape"));
   EXPECT_FALSE(MetricSet(std::vector<std::string>{"mse"}).has("flip"));
-  expect_parts(message([] { MetricSet(std::vector<std::string>{"rmsee"}); }), {"'rmsee'", "did you mean 'rmse'"});
-  expect_parts(message([] { MetricSet(std::vector<std::string>{"colourfulness"}); }), {"flip, mse", "ssim"});
+  expect_parts(pellucid::test::input_error([] { MetricSet(std::vector<std::string>{"rmsee"}); }),
+               {"'rmsee'", "did you mean 'rmse'"});
+  expect_parts(pellucid::test::input_error([] { MetricSet(std::vector<std::string>{"colourfulness"}); }),
+               {"flip, mse", "ssim"});
   EXPECT_THROW(MetricSet(std::vector<std::string>{}), InputError);
 }
 
@@ -184,7 +177,7 @@ TEST(Mask, SsimIsTakenWhereTheWindowsCentreIsMarked) {
 TEST(Mask, ThatCannotBeUsedIsAnError) {
   const Image reference = waves(30, 20, true).reference;
   const auto with = [&](const Image& mask) {
-    return message([&] { Comparison(reference, &mask, options({"mse", "ssim"})); });
+    return pellucid::test::input_error([&] { Comparison(reference, &mask, options({"mse", "ssim"})); });
   };
   expect_parts(with(Image(30, 20, 1)), {"mask", "no pixel"});
   expect_parts(with(flat(20, 30, {1, 1, 1})), {"mask", "20x30", "30x20"});
@@ -206,9 +199,11 @@ TEST(Comparison, NamesTheFirstPixelThatIsNotFinite) {
   infinite.at(19, 19)[2] = -std::numeric_limits<float>::infinity();
   for (const std::string& metric : metric_names()) {
     const Comparison comparison(sound, nullptr, options({metric}));
-    expect_parts(message([&] { comparison.compare(nan); }), {"test", "channel G", "(3, 2)", "nan"});
-    expect_parts(message([&] { comparison.compare(infinite); }), {"test", "channel B", "(19, 19)", "inf"});
-    expect_parts(message([&] { Comparison(nan, nullptr, options({metric})); }), {"reference", "(3, 2)"});
+    expect_parts(pellucid::test::input_error([&] { comparison.compare(nan); }), {"test", "channel G", "(3, 2)", "nan"});
+    expect_parts(pellucid::test::input_error([&] { comparison.compare(infinite); }),
+                 {"test", "channel B", "(19, 19)", "inf"});
+    expect_parts(pellucid::test::input_error([&] { Comparison(nan, nullptr, options({metric})); }),
+                 {"reference", "(3, 2)"});
   }
   Image alpha(2, 2, 4);
   alpha.at(1, 0)[3] = std::nanf("");
@@ -217,11 +212,11 @@ TEST(Comparison, NamesTheFirstPixelThatIsNotFinite) {
 
 TEST(Comparison, RefusesOtherSizesAndChannels) {
   const Comparison comparison(waves(20, 12, true).reference, nullptr, options({"mse"}));
-  expect_parts(message([&] { comparison.compare(waves(12, 20, true).test); }), {"12x20", "20x12"});
-  expect_parts(message([&] { comparison.compare(Image(20, 12, 2)); }), {"2 channels"});
+  expect_parts(pellucid::test::input_error([&] { comparison.compare(waves(12, 20, true).test); }), {"12x20", "20x12"});
+  expect_parts(pellucid::test::input_error([&] { comparison.compare(Image(20, 12, 2)); }), {"2 channels"});
   EXPECT_THROW(Comparison(Image(), nullptr, options({"mse"})), InputError);
   EXPECT_THROW(Comparison(Image(0, 4, 3), nullptr, options({"mse"})), InputError);
-  expect_parts(message([] {
+  expect_parts(pellucid::test::input_error([] {
                  Comparison(Image(8, 8, 3), nullptr, options({"mse", "ssim"}));
                }),
                {"ssim", "11x11", "8x8"});
