@@ -198,7 +198,7 @@ TEST_F(Bench, RefusesWhatItCannotTime) {
   EXPECT_TRUE(refused(bench({"-s", "hull=4"}), 2, {"hull", "did you mean 'hulls'"}));
   EXPECT_TRUE(refused(bench({"-s", "shadow.sise=4"}), 2, {"sise", "size"}));
   EXPECT_TRUE(refused(pellucid({"bench", "sampling_hulls", "--frames", "1"}), 2, {"frames"}));
-  EXPECT_TRUE(refused(pellucid({"bench", "sampling_hulls", "--size", "64"}), 2, {"--size 64"}));
+  EXPECT_TRUE(refused(pellucid({"bench", "sampling_hulls", "--size", "64"}), 2, {"--size '64'"}));
 }
 
 TEST_F(Bench, HelpShowsAnExample) {
