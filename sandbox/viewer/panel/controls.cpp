@@ -32,12 +32,15 @@ Field::Field(nanogui::Widget* parent) : nanogui::TextBox(parent, "") {
   setCallback([this](const std::string& words) {
     reason_ = offer ? offer(words) : std::string{};
     shown_ = reason_.empty() ? words : shown_;
+    just_refused_ = !reason_.empty();
     return true;  // a refused text stays, to be mended
   });
 }
 
 void Field::show(const std::string& words) {
   if (editing()) return;
+  // Whoever types at once may be ahead of the panel: the value that is shown next was there before.
+  if (std::exchange(just_refused_, false)) shown_ = words;
   if (!reason_.empty() && words == shown_) return;  // the refused text stays until something else happens
   reason_.clear();
   shown_ = words;

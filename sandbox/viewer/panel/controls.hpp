@@ -32,6 +32,7 @@ class Field : public nanogui::TextBox, public Reachable {
 
  private:
   std::string shown_, reason_;
+  bool just_refused_ = false;
 };
 
 /// A bar to drag; its position is a share in [0, 1].
