@@ -33,7 +33,8 @@ Window::Window(const WindowOptions& options) {
 #ifdef GLFW_PLATFORM
   // From version 3.4 on GLFW tries Wayland too, whose library prints an error of its own where nothing says that it is
   // there.
-  if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+  const char* const wayland = std::getenv("WAYLAND_DISPLAY");
+  if (wayland == nullptr || *wayland == '\0') glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   if (glfwInit() == GLFW_FALSE) throw NoDisplay(fmt::format("there is no display: {}", glfw_reason()));
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
