@@ -131,8 +131,8 @@ std::vector<int> ints(const Buffer& buffer) {
 }
 
 TEST_F(BufferTest, KeepsWhatIsUploaded) {
-  for (const GLenum usage : {GL_STATIC_DRAW, GL_STREAM_DRAW}) {
-    Buffer buffer("numbers", std::span<const int>(std::vector<int>{1, 2, 3, 4}), usage);
+  for (const int usage : {GL_STATIC_DRAW, GL_STREAM_DRAW}) {
+    Buffer buffer("numbers", std::span<const int>(std::vector<int>{1, 2, 3, 4}), static_cast<GLenum>(usage));
     EXPECT_EQ(ints(buffer), (std::vector<int>{1, 2, 3, 4}));
     buffer.upload(std::span<const int>(std::vector<int>{9, 8}));  // the first bytes only
     EXPECT_EQ(ints(buffer), (std::vector<int>{9, 8, 3, 4}));

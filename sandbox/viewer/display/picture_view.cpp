@@ -19,8 +19,8 @@ constexpr const char* kPicture = "sandbox/viewer/display/picture.frag.glsl";
 const glm::vec3 kGround(0.11F, 0.115F, 0.125F);
 
 void switch_off_tests() {
-  for (const GLenum test : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE})
-    glDisable(test);
+  for (const int test : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE})
+    glDisable(static_cast<GLenum>(test));
 }
 
 // FLIP's own colours, so that all maps of the window share one scale.
