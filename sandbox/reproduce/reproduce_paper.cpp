@@ -1,10 +1,13 @@
 #include "sandbox/reproduce/reproduce_paper.hpp"
 
+#include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -99,29 +102,39 @@ std::string device_of(const PaperOutcome& outcome) {
   return "";
 }
 
+// Two sets at a time: much of a picture is work for one core alone, and none of it is timed.
 void draw_all_pictures(const PaperOptions& options, const std::filesystem::path& folder, PaperOutcome& outcome) {
-  for (const plots::PictureSet& set : plots::read_pictures(*outcome.paper)) {
+  const std::vector<plots::PictureSet> sets = plots::read_pictures(*outcome.paper);
+  outcome.pictures.resize(sets.size());
+  const auto draw = [&](std::size_t i) {
+    const plots::PictureSet& set = sets[i];
     PictureOptions drawing{.folder = folder / "pictures" / set.name,
                            .device = options.device,
                            .preview = options.preview,
                            .made_on = device_of(outcome),
                            .say = {}};
     drawing.say = [&](const std::string& what) { tell("{}: {}: {}", outcome.paper->name, set.name, what); };
-    make_folder(drawing.folder);
-    PicturesOutcome result{.name = set.name,
-                           .title = set.title,
-                           .drawn = {},
-                           .folder = fmt::format("{}/pictures/{}", outcome.folder, set.name),
-                           .missing = {}};
+    PicturesOutcome& result = outcome.pictures[i];
+    result.name = set.name;
+    result.title = set.title;
+    result.folder = fmt::format("{}/pictures/{}", outcome.folder, set.name);
     try {
+      make_folder(drawing.folder);
       result.drawn = draw_pictures(set, drawing);
     } catch (const std::exception& e) {
       // The sweeps before it may have taken hours: the report shows them, and why this is missing.
       result.missing = e.what();
       tell("{}: {}: not drawn: {}", outcome.paper->name, set.name, e.what());
     }
-    outcome.pictures.push_back(std::move(result));
-  }
+  };
+  std::atomic<std::size_t> next = 0;
+  const auto draw_those_left = [&] {
+    for (std::size_t i = next++; i < sets.size(); i = next++)
+      draw(i);
+  };
+  std::thread other(draw_those_left);
+  draw_those_left();
+  other.join();
 }
 
 void write_tables(const std::filesystem::path& folder, PaperOutcome& outcome) {
