@@ -24,14 +24,16 @@ vec3 pull_at(vec3 at, vec3 units_per_metre) {
 }
 
 // Follows the view ray `v`, which straight would meet the mesh at the frame's origin, from where it enters the air: with
-// the path parameter σ, dσ = ds / n, it obeys d²p/dσ² = ∇(n²)/2 (leapfrog). True where it meets the mesh, at `p` along `v`;
-// else it leaves upwards along `v`.
-bool bend_through_air(vec2 uv, vec2 uv_per_metre, out vec3 p, inout vec3 v) {
+// the path parameter σ, dσ = ds / n, it obeys d²p/dσ² = ∇(n²)/2 (leapfrog). The ray comes to the mesh, at `p` along `v`, or
+// leaves upwards from `p` along `v`, or meets an object, whose radiance is `color`.
+const int kComesDown = 0, kLeaves = 1, kMeetsObject = 2;
+int bend_through_air(vec2 uv, vec2 uv_per_metre, out vec3 p, inout vec3 v, out vec3 color) {
   vec3 units = vec3(uv_per_metre, 1.0 / air_height);
   float way = air_height / -v.z;
   p = -way * v;
   vec3 momentum = v * sqrt(index2_at(vec3(uv, 0.0) + p * units));
-  float stride = 2.0 * way / float(air_steps);
+  // A ray that just turns at the ground goes four times as far, if the squared index is linear in height.
+  float stride = 4.0 * way / float(air_steps);
   for (int i = 0; i < air_steps; ++i) {
     vec3 at = vec3(uv, 0.0) + p * units;
     float h = stride / length(momentum);
@@ -39,14 +41,22 @@ bool bend_through_air(vec2 uv, vec2 uv_per_metre, out vec3 p, inout vec3 v) {
     vec3 before = p;
     p += h * momentum;
     momentum += 0.5 * h * pull_at(vec3(uv, 0.0) + p * units, units);
+#ifdef OBJECTS
+    vec2 place;
+    float behind = behind_objects(to_world_point(p), place);
+    if (behind >= 0.0 && behind < 2.0 * stride) {
+      color = textureLod(scene_color, place, 0.0).rgb;
+      return kMeetsObject;
+    }
+#endif
     if (p.z <= 0.0) {
       p = mix(before, p, before.z / (before.z - p.z));
       p.z = 0.0;
       v = normalize(momentum);
-      return true;
+      return kComesDown;
     }
     if (p.z > air_height && momentum.z > 0.0) break;
   }
   v = normalize(momentum);
-  return v.z < 0.0;  // so near that the steps gave out
+  return v.z < 0.0 ? kComesDown : kLeaves;  // down: so near that the steps gave out
 }

@@ -18,14 +18,18 @@ float behind_objects(vec3 world, out vec2 at) {
 }
 
 // Where a ray of that length passes behind an object, and its radiance there; negative where it does not. A surface that it passes
-// far behind is not thick enough to be met.
+// far behind is not thick enough to be met. Steps are equal on the screen.
 float meet_object(vec3 origin, vec3 direction, float reach, out vec3 color) {
-  float stride = reach / float(object_steps), before = 0.0;
+  mat4 rows = transpose(world_to_clip);
+  float near = dot(rows[3], vec4(origin, 1.0)), along = dot(rows[3].xyz, direction);  // of the view's axis
+  if (near <= clip_planes.x) return -1.0;
+  if (along < 0.0) reach = min(reach, (clip_planes.x - near) / along);
+  float far = near + reach * along, before = 0.0;
   vec2 at;
   for (int i = 1; i <= object_steps; ++i) {
-    float t = stride * float(i);
+    float t = reach * near * float(i) / (far * float(object_steps - i) + near * float(i));
     float behind = behind_objects(origin + t * direction, at);
-    if (behind >= 0.0 && behind < 2.0 * stride) {
+    if (behind >= 0.0 && behind < 2.0 * (t - before)) {
       for (int k = 0; k < 6; ++k) {
         float middle = 0.5 * (before + t);
         vec2 place;

@@ -7,10 +7,6 @@
 #ifdef CAUSTICS
 layout(binding = 13) uniform sampler2DArray caustic_maps;  // by light, over the relief's maps
 #endif
-#ifdef AIR
-#include "algorithms/translucent_relief/air.glsl"
-#endif
-
 in vec3 world_position;
 in vec3 world_normal;
 in vec3 world_over_u;
@@ -47,6 +43,10 @@ mat3 to_frame;  // rows: along u, along v, normal
 
 vec3 to_world_direction(vec3 d) { return d * to_frame; }
 vec3 to_world_point(vec3 p) { return world_position + p * to_frame; }
+
+#ifdef AIR
+#include "algorithms/translucent_relief/air.glsl"
+#endif
 
 vec3 sky_radiance(vec3 direction) {
   FETCHED(other_fetches.w, 1);
@@ -264,10 +264,16 @@ void main() {
   v = normalize(v);
   Ray ray = Ray(vec3(0.0), v, mesh_uv, 1.0 / metres);
 #if defined(AIR) && !defined(REPORT) && !defined(COUNT)
-  vec3 through;
-  bool down = bend_through_air(mesh_uv, 1.0 / metres, through, v);
-  if (!down) {
-    radiance = vec4(sky_radiance(to_world_direction(v)), 1.0);
+  vec3 through, beyond;
+  int end = bend_through_air(mesh_uv, 1.0 / metres, through, v, beyond);
+  if (end == kLeaves) {
+#ifdef OBJECTS
+    if (meet_object(to_world_point(through), to_world_direction(v), clip_planes.y, beyond) < 0.0)
+#endif
+      beyond = sky_radiance(to_world_direction(v));
+  }
+  if (end != kComesDown) {
+    radiance = vec4(beyond, 1.0);
     gl_FragDepth = gl_FragCoord.z;
     return;
   }
@@ -331,9 +337,13 @@ void main() {
 #else
   radiance = vec4(color, 1.0);
 #endif
+#ifdef AIR
+  gl_FragDepth = gl_FragCoord.z;  // where the bent ray ends is not behind what straight rays see there
+#else
   // Depth over the distance from the eye is far / (far − near) − c / distance along a ray.
   float at_infinity = clip_planes.y / (clip_planes.y - clip_planes.x);
   float nearer = distance(world_position, eye) / distance(to_world_point(p), eye);
   gl_FragDepth = clamp(at_infinity - (at_infinity - gl_FragCoord.z) * nearer, 0.0, 1.0);
+#endif
 #endif
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -11,7 +13,8 @@
 namespace pellucid {
 namespace {
 
-constexpr double kAirSteps = 2000;
+constexpr double kAirSteps = 400;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Value>
 auto interpolate(const std::vector<Value>& values, const Hit& hit) {
@@ -82,9 +85,20 @@ std::optional<ReliefSurfaces::Seen> ReliefSurfaces::seen(const Hit& hit, const S
   if (const auto& air = scene_->reliefs[static_cast<std::size_t>(hit.instance->relief)].air) {
     // From where the straight ray enters the air.
     const double way = static_cast<double>(air->height_m) / -v.z;
-    const BentRay bent = bend_through(*air, straight.ray(-way * v, v), 2.0 * way / kAirSteps);
-    if (!bent.meets)
-      return Seen{glm::dvec3(scene_->environment.radiance(glm::vec3(straight.to_world(bent.direction)))), 0.0};
+    std::optional<ReliefTracer::Object> object;
+    const auto stops = [&](const glm::dvec3& from, const glm::dvec3& to) {
+      const double length = glm::distance(from, to);
+      object =
+          object_on(straight.position + straight.to_world(from), straight.to_world((to - from) / length), length, rays);
+      return object.has_value();
+    };
+    const BentRay bent =
+        bend_through(*air, straight.ray(-way * v, v), 2.0 * way / kAirSteps, objects_ ? std::function(stops) : nullptr);
+    const glm::dvec3 onward = straight.to_world(bent.direction);
+    if (bent.end == BentRay::End::leaves)
+      object = object_on(straight.position + straight.to_world(bent.position), onward, kInfinity, rays);
+    if (object) return Seen{object->radiance, 0.0};
+    if (bent.end == BentRay::End::leaves) return Seen{glm::dvec3(scene_->environment.radiance(glm::vec3(onward))), 0.0};
     place.position += straight.to_world(bent.position);
     place.uv += glm::dvec2(bent.position) / glm::dvec2(place.frame.metres_per_u, place.frame.metres_per_v);
     v = bent.direction;

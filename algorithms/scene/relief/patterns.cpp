@@ -143,8 +143,8 @@ Texel gem_at(const glm::vec2& uv, const PatternOptions& options) {
   constexpr int kFacets = 8;
   float height = 1.0F;  // the table's
   for (int ring = 0; ring < 2; ++ring) {
-    // A crown of steep facets, and between them flatter ones.
-    const float steep = ring == 0 ? 4.0F : 2.2F, reach = ring == 0 ? 0.42F : 0.36F + 0.12F;
+    // A crown's main facets, which end at the table, and between them steeper ones at the girdle.
+    const float steep = ring == 0 ? 4.0F : 5.0F, reach = ring == 0 ? 0.45F : 0.44F;
     for (int i = 0; i < kFacets; ++i) {
       const float angle = 2.0F * std::numbers::pi_v<float> * (static_cast<float>(i) + 0.5F * static_cast<float>(ring)) /
                           static_cast<float>(kFacets);

@@ -117,23 +117,26 @@ TEST(TranslucentRelief, CausticsOfALevelSurfaceInClosedForm) {
   EXPECT_LT(worst, 1e-3) << "the maps are of half floats";
 }
 
-// A mirage against rays of fourth order.
-TEST(TranslucentRelief, BendsRaysAsTheReferenceDoes) {
+// A flat ground of 2 × 2 m, seen along it, under air whose squared index rises from 1 linearly by `rise` over its
+// height.
+Scene mirage_scene(float height_m, float rise) {
   Relief relief;
   relief.cut = false;
   relief.solid = flat_layer(0.0F, -0.1F);
   ReliefAir air;
-  air.height_m = 0.2F;
+  air.height_m = height_m;
   air.size = {2, 2, 32};
   for (int z = 0; z < 32; ++z)
-    air.index2.insert(air.index2.end(), 4, 1.0F + 0.04F * static_cast<float>(z) / 31.0F);
+    air.index2.insert(air.index2.end(), 4, 1.0F + rise * static_cast<float>(z) / 31.0F);
   relief.air = air;
-  const auto make = [&] {
-    Scene scene = relief_scene(relief);
-    scene.views[0] = {.name = "front", .eye = {0.0F, 0.35F, 1.4F}, .target = {0.0F, 0.0F, -0.5F}, .fov_y_deg = 30.0F};
-    return scene;
-  };
-  const Image expected = truth(make(), 96, 72), image = frame(make(), settings());
+  Scene scene = relief_scene(relief);
+  scene.views[0] = {.name = "front", .eye = {0.0F, 0.35F, 1.4F}, .target = {0.0F, 0.0F, -0.5F}, .fov_y_deg = 30.0F};
+  return scene;
+}
+
+// A mirage against rays of fourth order.
+TEST(TranslucentRelief, BendsRaysAsTheReferenceDoes) {
+  const Image expected = truth(mirage_scene(0.2F, 0.04F), 96, 72), image = frame(mirage_scene(0.2F, 0.04F), settings());
   int sky = 0, differ = 0;
   for (int y = 0; y < 72; ++y) {
     for (int x = 0; x < 96; ++x) {
@@ -144,8 +147,40 @@ TEST(TranslucentRelief, BendsRaysAsTheReferenceDoes) {
   EXPECT_GT(sky, 1000);
   // Where the last ray still turns is a line in the picture.
   EXPECT_LE(differ, 2 * 96);
-  const Image straight = frame(make(), settings({{"air_steps", "0"}}));
+  const Image straight = frame(mirage_scene(0.2F, 0.04F), settings({{"air_steps", "0"}}));
   EXPECT_GT(difference(straight, image).mean, 0.01) << "the air does something";
+}
+
+// Two boxes, red over green, partly in the bent air and partly over it: their image in the ground is upside down.
+TEST(TranslucentRelief, AMirageIsUpsideDown) {
+  const auto make = [] {
+    Scene scene = mirage_scene(0.02F, 0.08F);
+    scene.meshes.push_back(make_box({0.5F, 0.12F, 0.1F}));
+    scene.materials.push_back({.name = "green", .albedo = {0.05F, 0.9F, 0.05F}});
+    scene.materials.push_back({.name = "red", .albedo = {0.9F, 0.05F, 0.05F}});
+    for (int i = 0; i < 2; ++i) {
+      scene.instances.push_back({.name = i == 0 ? "below" : "above", .mesh = 1, .material = 1 + i});
+      scene.instances.back().to_world[3] = {0.0F, 0.06F + 0.12F * static_cast<float>(i), -0.9F, 1.0F};
+    }
+    return scene;
+  };
+  // The middle column from above downwards: red, green, or anything else.
+  const auto column = [](const Image& image) {
+    std::string seen;
+    for (int y = 0; y < image.height; ++y) {
+      const float* c = image.at(48, y);
+      const char what = c[0] > 3 * c[1] ? 'r' : c[1] > 3 * c[0] ? 'g' : '.';
+      if (seen.empty() || seen.back() != what) seen += what;
+    }
+    return seen;
+  };
+  const Image image = frame(make(), settings());
+  EXPECT_EQ(column(image), ".rgr.");
+  EXPECT_EQ(column(frame(make(), settings({{"air_steps", "0"}}))), ".rg.");
+  const Image expected = truth(make(), 96, 72);
+  EXPECT_EQ(column(expected), ".rgr.");
+  // Edges fall on the next pixel's side, and the boxes' undersides are not on the screen.
+  EXPECT_LT(difference(image, expected).mean, 8e-3);
 }
 
 // A ball mostly in the medium, seen through it and mirrored in it.
