@@ -24,28 +24,60 @@ float smooth(float low, float high, float x) {
   return glm::smoothstep(low, high, x);
 }
 
-// Gradient noise in the plane that repeats after `period`: about [−1, 1].
-float periodic_noise(const glm::vec2& p, int period, std::uint32_t seed) {
-  const glm::vec2 cell = glm::floor(p), f = p - cell;
-  const glm::vec2 w = f * f * f * (f * (f * 6.0F - 15.0F) + 10.0F);
-  const auto corner = [&](int dx, int dy) {
-    const std::uint32_t bits = hash_bits(wrapped(static_cast<int>(cell.x) + dx, period),
-                                         wrapped(static_cast<int>(cell.y) + dy, period), 0, seed);
-    const float angle = 2.0F * std::numbers::pi_v<float> * unit_float(bits);
-    return std::cos(angle) * (f.x - static_cast<float>(dx)) + std::sin(angle) * (f.y - static_cast<float>(dy));
-  };
-  return 1.4F * glm::mix(glm::mix(corner(0, 0), corner(1, 0), w.x), glm::mix(corner(0, 1), corner(1, 1), w.x), w.y);
-}
-
-float periodic_fractal(const glm::vec2& uv, int frequency, int octaves, std::uint32_t seed) {
-  float sum = 0, amplitude = 1, total = 0;
-  for (int octave = 0; octave < octaves; ++octave, frequency *= 2, amplitude *= 0.5F) {
-    sum += amplitude *
-           periodic_noise(uv * static_cast<float>(frequency), frequency, seed + static_cast<std::uint32_t>(octave));
-    total += amplitude;
+// Octaves of gradient noise in the plane that repeat after [0, 1]², each of twice the frequency and half the amplitude
+// of the one before: about [−1, 1].
+class FractalNoise {
+ public:
+  FractalNoise(int frequency, int octaves, std::uint32_t seed) {
+    float amplitude = 1;
+    for (int i = 0; i < octaves; ++i, frequency *= 2, amplitude *= 0.5F) {
+      Octave& octave = octaves_.emplace_back(Octave{frequency, seed + static_cast<std::uint32_t>(i), amplitude, {}});
+      total_ += amplitude;
+      if (frequency > kMostKept) continue;
+      for (int y = 0; y < frequency; ++y) {
+        for (int x = 0; x < frequency; ++x)
+          octave.kept.push_back(octave.gradient(x, y));
+      }
+    }
   }
-  return sum / total;
-}
+  float at(const glm::vec2& uv) const {
+    float sum = 0;
+    for (const Octave& octave : octaves_)
+      sum += octave.amplitude * octave.at(uv * static_cast<float>(octave.period));
+    return sum / total_;
+  }
+
+ private:
+  static constexpr int kMostKept = 512;  // finer gradients than those are used about once each
+
+  struct Octave {
+    int period;
+    std::uint32_t seed;
+    float amplitude;
+    std::vector<glm::vec2> kept;
+
+    glm::vec2 gradient(int x, int y) const {
+      const float angle = 2.0F * std::numbers::pi_v<float> * unit_float(hash_bits(x, y, 0, seed));
+      return {std::cos(angle), std::sin(angle)};
+    }
+    float at(const glm::vec2& p) const {
+      const glm::vec2 cell = glm::floor(p), f = p - cell;
+      const glm::vec2 w = f * f * f * (f * (f * 6.0F - 15.0F) + 10.0F);
+      const auto corner = [&](int dx, int dy) {
+        const int x = wrapped(static_cast<int>(cell.x) + dx, period),
+                  y = wrapped(static_cast<int>(cell.y) + dy, period);
+        const glm::vec2 g =
+            kept.empty()
+                ? gradient(x, y)
+                : kept[static_cast<std::size_t>(y) * static_cast<std::size_t>(period) + static_cast<std::size_t>(x)];
+        return g.x * (f.x - static_cast<float>(dx)) + g.y * (f.y - static_cast<float>(dy));
+      };
+      return 1.4F * glm::mix(glm::mix(corner(0, 0), corner(1, 0), w.x), glm::mix(corner(0, 1), corner(1, 1), w.x), w.y);
+    }
+  };
+  std::vector<Octave> octaves_;
+  float total_ = 0;
+};
 
 struct Texel {
   float height = 0;
@@ -59,7 +91,7 @@ glm::vec3 tone(int x, int y, const PatternOptions& options) {
   return bright * (1.0F - 0.25F * options.contrast * glm::vec3(random(12), random(13), random(14)));
 }
 
-Texel brick_at(const glm::vec2& uv, const PatternOptions& options) {
+Texel brick_at(const glm::vec2& uv, const PatternOptions& options, const FractalNoise& noise) {
   const int row = static_cast<int>(uv.y * static_cast<float>(options.rows));
   const float shift = row % 2 == 0 ? 0.0F : 0.5F;
   const float along = uv.x * static_cast<float>(options.columns) + shift;
@@ -70,7 +102,7 @@ Texel brick_at(const glm::vec2& uv, const PatternOptions& options) {
   const float edge = std::min(std::min(in.x, 1.0F - in.x) * aspect, std::min(in.y, 1.0F - in.y));
   const float inside = smooth(0.5F * options.joint, 0.5F * options.joint + 0.12F, edge);
   const float own = 0.12F * unit_float(hash_bits(column, row, 10, options.seed));
-  const float rough = periodic_fractal(uv, 16, 3, options.seed);
+  const float rough = noise.at(uv);
   const float fine = 0.5F * options.roughness * rough;
   Texel texel;
   texel.height = glm::mix(0.12F + fine, 0.82F - own + fine, inside);
@@ -84,35 +116,48 @@ struct Nearest {
   float first = 9, second = 9;
   int x = 0, y = 0;
 };
-Nearest nearest_point(const glm::vec2& uv, const PatternOptions& options, float jitter) {
-  const glm::vec2 p = uv * glm::vec2(options.columns, options.rows);
-  const int cx = static_cast<int>(std::floor(p.x)), cy = static_cast<int>(std::floor(p.y));
-  Nearest found;
-  for (int y = cy - 2; y <= cy + 2; ++y) {
-    for (int x = cx - 2; x <= cx + 2; ++x) {
-      const int wx = wrapped(x, options.columns), wy = wrapped(y, options.rows);
-      const glm::vec2 at = glm::vec2(x, y) + 0.5F +
-                           jitter * (glm::vec2(unit_float(hash_bits(wx, wy, 1, options.seed)),
-                                               unit_float(hash_bits(wx, wy, 2, options.seed))) -
-                                     0.5F);
-      const float distance = glm::distance(p, at);
-      if (distance < found.first) {
-        found = {distance, found.first, wx, wy};
-      } else {
-        found.second = std::min(found.second, distance);
-      }
+class JitteredPoints {
+ public:
+  JitteredPoints(const PatternOptions& options, float jitter) : columns_(options.columns), rows_(options.rows) {
+    for (int y = 0; y < rows_; ++y) {
+      for (int x = 0; x < columns_; ++x)
+        offsets_.push_back(jitter * (glm::vec2(unit_float(hash_bits(x, y, 1, options.seed)),
+                                               unit_float(hash_bits(x, y, 2, options.seed))) -
+                                     0.5F));
     }
   }
-  return found;
-}
+  Nearest nearest(const glm::vec2& uv) const {
+    const glm::vec2 p = uv * glm::vec2(columns_, rows_);
+    const int cx = static_cast<int>(std::floor(p.x)), cy = static_cast<int>(std::floor(p.y));
+    Nearest found;
+    for (int y = cy - 2; y <= cy + 2; ++y) {
+      for (int x = cx - 2; x <= cx + 2; ++x) {
+        const int wx = wrapped(x, columns_), wy = wrapped(y, rows_);
+        const glm::vec2 at = glm::vec2(x, y) + 0.5F + offsets_[static_cast<std::size_t>(wy * columns_ + wx)];
+        const float distance = glm::distance(p, at);
+        if (distance < found.first) {
+          found = {distance, found.first, wx, wy};
+        } else {
+          found.second = std::min(found.second, distance);
+        }
+      }
+    }
+    return found;
+  }
 
-Texel stone_at(const glm::vec2& uv, const PatternOptions& options) {
-  const Nearest near = nearest_point(uv, options, 0.8F);
+ private:
+  int columns_, rows_;
+  std::vector<glm::vec2> offsets_;
+};
+
+Texel stone_at(const glm::vec2& uv, const PatternOptions& options, const JitteredPoints& points,
+               const FractalNoise& noise) {
+  const Nearest near = points.nearest(uv);
   const float own = unit_float(hash_bits(near.x, near.y, 10, options.seed));
   const float edge = near.second - near.first;
   const float inside = smooth(options.joint, options.joint + 0.35F, edge);
   const float dome = std::sqrt(std::max(0.0F, 1.0F - near.first * near.first / 1.2F));
-  const float rough = periodic_fractal(uv, 8, 4, options.seed);
+  const float rough = noise.at(uv);
   Texel texel;
   texel.height = inside * (0.45F + 0.2F * own) * dome + 0.15F + 0.5F * options.roughness * rough;
   texel.color = glm::mix(glm::vec3(0.45F, 0.4F, 0.35F), tone(near.x, near.y, options), inside) *
@@ -120,8 +165,8 @@ Texel stone_at(const glm::vec2& uv, const PatternOptions& options) {
   return texel;
 }
 
-Texel noise_at(const glm::vec2& uv, const PatternOptions& options) {
-  const float value = periodic_fractal(uv, options.frequency, options.octaves, options.seed);
+Texel noise_at(const glm::vec2& uv, const PatternOptions& options, const FractalNoise& noise) {
+  const float value = noise.at(uv);
   Texel texel;
   texel.height = 0.5F + 0.5F * value;
   texel.color = glm::vec3(1.0F - options.contrast * (0.5F - 0.5F * value));
@@ -129,8 +174,8 @@ Texel noise_at(const glm::vec2& uv, const PatternOptions& options) {
 }
 
 // Rounded pieces of glass with gaps between them.
-Texel cell_at(const glm::vec2& uv, const PatternOptions& options) {
-  const Nearest near = nearest_point(uv, options, 0.7F);
+Texel cell_at(const glm::vec2& uv, const PatternOptions& options, const JitteredPoints& points) {
+  const Nearest near = points.nearest(uv);
   const float edge = std::max(0.0F, near.second - near.first - options.joint);
   const float round = std::min(1.0F, edge / 0.6F);
   return {options.level * std::sqrt(round * (2.0F - round)), glm::vec3(1.0F)};
@@ -197,16 +242,20 @@ PatternMaps make_pattern(const PatternOptions& options) {
   std::function<Texel(const glm::vec2&)> at;
   switch (options.kind) {
     case Pattern::bricks:
-      at = [&](const glm::vec2& uv) { return brick_at(uv, options); };
+      at = [&, noise = FractalNoise(16, 3, options.seed)](const glm::vec2& uv) { return brick_at(uv, options, noise); };
       break;
     case Pattern::stones:
-      at = [&](const glm::vec2& uv) { return stone_at(uv, options); };
+      at = [&, points = JitteredPoints(options, 0.8F), noise = FractalNoise(8, 4, options.seed)](const glm::vec2& uv) {
+        return stone_at(uv, options, points, noise);
+      };
       break;
     case Pattern::noise:
-      at = [&](const glm::vec2& uv) { return noise_at(uv, options); };
+      at = [&, noise = FractalNoise(options.frequency, options.octaves, options.seed)](const glm::vec2& uv) {
+        return noise_at(uv, options, noise);
+      };
       break;
     case Pattern::cells:
-      at = [&](const glm::vec2& uv) { return cell_at(uv, options); };
+      at = [&, points = JitteredPoints(options, 0.7F)](const glm::vec2& uv) { return cell_at(uv, options, points); };
       break;
     case Pattern::gems:
       at = [&](const glm::vec2& uv) { return gem_at(uv, options); };
