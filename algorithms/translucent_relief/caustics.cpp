@@ -2,71 +2,87 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "algorithms/scene/meshes/tangents.hpp"
-#include "gl/error.hpp"
+#include "algorithms/translucent_relief/caustic_charts.hpp"
 
 namespace pellucid::translucent_relief {
 namespace {
 
-// The frame that all points of a flat mesh share.
-SurfaceFrame<glm::vec3> frame_of(const Scene& scene, const Instance& instance) {
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-  const std::string what = fmt::format("'{}' of scene '{}'", instance.name, scene.name);
-  const Tangents tangents = tangents_of(mesh, what);
-  const glm::vec3& normal = mesh.normals.front();
-  if (std::any_of(mesh.normals.begin(), mesh.normals.end(),
-                  [&](const glm::vec3& n) { return glm::distance(n, normal) > 1e-3F; })) {
-    throw InputError(fmt::format("translucent_relief: caustics = true takes flat meshes, and {} is not flat", what));
-  }
-  const glm::mat3 to_world(instance.to_world);
-  return surface_frame(glm::normalize(glm::transpose(glm::inverse(to_world)) * normal), to_world * tangents.u.front(),
-                       to_world * tangents.v.front());
-}
+constexpr GLuint kMapsUnit = 13, kNodesUnit = 14, kLayersBinding = 2;
+constexpr int kTexelsOfNode = static_cast<int>(sizeof(CausticNode) / sizeof(glm::vec4));
 
 }  // namespace
 
+void Caustics::lay_out(const Scene& scene, const Instance& instance, int side) {
+  const CausticCharts charts = caustic_charts(scene.meshes[static_cast<std::size_t>(instance.mesh)], side,
+                                              fmt::format("'{}' of scene '{}'", instance.name, scene.name));
+  charts_ = static_cast<int>(charts.layers.size());
+  nodes_ = gl::Texture::make_2d_array("caustic nodes", gl::Format::rgba32f, side, side, charts_ * kTexelsOfNode);
+  std::vector<glm::vec4> texels(charts.layers[0].size());
+  for (int layer = 0; layer < charts_ * kTexelsOfNode; ++layer) {
+    const std::vector<CausticNode>& nodes = charts.layers[static_cast<std::size_t>(layer / kTexelsOfNode)];
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const glm::vec4* members[] = {&nodes[i].position, &nodes[i].normal, &nodes[i].over_u, &nodes[i].over_v};
+      texels[i] = *members[layer % kTexelsOfNode];
+    }
+    nodes_.upload_layer(layer, std::span(&texels[0].x, 4 * texels.size()));
+  }
+  layer_of_triangle_ = gl::Buffer("caustic layers", std::span<const std::uint32_t>(charts.layer_of_triangle));
+  over_u_ = charts.over_u;
+  over_v_ = charts.over_v;
+}
+
 void Caustics::update(const Scene& scene, const Instance& instance, int resolution, const gl::Defines& defines,
                       const std::function<void(const gl::Program&)>& set_uniforms) {
-  const SurfaceFrame<glm::vec3> frame = frame_of(scene, instance);
   if (!program_ || defines != defines_) {
     const std::string folder = "algorithms/translucent_relief/";
     program_ = gl::Program("caustics", {folder + "caustics.vert.glsl", folder + "caustics.frag.glsl"}, defines);
     defines_ = defines;
     grid_ = gl::VertexArray("caustics");
   }
-  if (!maps_ || maps_.width() != resolution) {
-    maps_ = gl::Texture::make_2d_array("caustics", gl::Format::rgba16f, resolution, resolution, kMaxLights);
-    maps_.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
-  }
+  const int cells = std::max(1, resolution / 2);
+  const bool copies = !scene.reliefs[static_cast<std::size_t>(instance.relief)].cut;
+  const int lights = static_cast<int>(scene.lights.size());
+  if (!nodes_ || nodes_.width() != cells + 1) lay_out(scene, instance, cells + 1);
+  if (!maps_ || maps_.width() != resolution || maps_.depth() != std::max(1, lights * charts_))
+    maps_ = gl::Texture::make_2d_array("caustics", gl::Format::rgba32f, resolution, resolution,
+                                       std::max(1, lights * charts_));
+  maps_.set_sampling(gl::Filter::linear, copies ? gl::Wrap::repeat : gl::Wrap::clamp);
   program_.use();
   set_uniforms(program_);
+  nodes_.bind(kNodesUnit);
   program_.set("cut", false);
-  const bool copies = !scene.reliefs[static_cast<std::size_t>(instance.relief)].cut;
-  const int grid = std::max(1, resolution / 2);
   program_.set("copies", copies);
-  program_.set("grid", grid);
+  program_.set("grid", cells);
   program_.set("resolution", static_cast<float>(resolution));
-  program_.set("metres", glm::vec2(frame.metres_per_u, frame.metres_per_v));
+  program_.set("beyond_u", over_u_);
+  program_.set("beyond_v", over_v_);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
-    const glm::vec3 to_light(-glm::dot(light.direction, frame.along_u), -glm::dot(light.direction, frame.along_v),
-                             -glm::dot(light.direction, frame.normal));
-    if (light.kind != LightKind::directional || to_light.z <= 0.0F) continue;
-    const gl::Framebuffer target = gl::Framebuffer::layered("caustics", maps_, nullptr, static_cast<int>(i));
-    target.bind();
-    target.clear_color(0, {0, 0, 0, 0});
-    program_.set("to_light", to_light);
-    grid_.bind();
-    glDrawArraysInstanced(GL_TRIANGLES, 0, 6 * grid * grid, copies ? 9 : 1);
+  grid_.bind();
+  for (int light = 0; light < lights; ++light) {
+    for (int chart = 0; chart < charts_; ++chart) {
+      const gl::Framebuffer target = gl::Framebuffer::layered("caustics", maps_, nullptr, light * charts_ + chart);
+      target.bind();
+      target.clear_color(0, {0, 0, 0, 0});
+      program_.set("light", light);
+      program_.set("chart", chart);
+      glDrawArraysInstanced(GL_TRIANGLES, 0, 6 * cells * cells, copies ? 9 : 1);
+    }
   }
   glDisable(GL_BLEND);
+}
+
+void Caustics::bind() const {
+  maps_.bind(kMapsUnit);
+  layer_of_triangle_.bind_storage(kLayersBinding);
 }
 
 }  // namespace pellucid::translucent_relief

@@ -10,23 +10,29 @@
 
 namespace pellucid::translucent_relief {
 
-/// Light that the medium's waves gather on the solid, from directional lights under a flat mesh: maps over the relief's
-/// maps, one for each light, of its irradiance on a level plane relative to that without a medium. Timonen, Sec. 4.1,
-/// says that the paper's light occlusion cannot have them.
+/// Light that the medium's waves gather on the solid: maps over the mesh's texture, one for each light and layer of
+/// charts, of the power that comes to a level plane at the solid's mean height. Timonen, Sec. 4.1, says that the
+/// paper's light occlusion cannot have them.
 class Caustics {
  public:
-  /// Draws the maps. `set_uniforms` sets those of light_reaching.glsl, and its maps, for a program. InputError: the
-  /// mesh is not flat.
+  /// Draws the maps. `set_uniforms` sets those of light_reaching.glsl, and its maps, for a program. InputError: as
+  /// caustic_charts().
   void update(const Scene&, const Instance&, int resolution, const gl::Defines&,
               const std::function<void(const gl::Program&)>& set_uniforms);
-  void bind() const { maps_.bind(13); }
+  /// For relief.frag.glsl.
+  void bind() const;
   std::string reload_shaders() { return program_ ? program_.reload() : std::string(); }
 
  private:
+  void lay_out(const Scene&, const Instance&, int side);
+
   gl::Program program_;
   gl::Defines defines_;
-  gl::Texture maps_;
+  gl::Texture maps_, nodes_;
+  gl::Buffer layer_of_triangle_;
   gl::VertexArray grid_;
+  int charts_ = 0;
+  glm::vec3 over_u_{0.0F}, over_v_{0.0F};  // of a mesh that may be continued, else 0
 };
 
 }  // namespace pellucid::translucent_relief

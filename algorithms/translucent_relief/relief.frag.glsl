@@ -5,7 +5,9 @@
 
 #include "algorithms/translucent_relief/objects.glsl"
 #ifdef CAUSTICS
-layout(binding = 13) uniform sampler2DArray caustic_maps;  // by light, over the relief's maps
+// By light and layer of charts: power on a unit of the mesh's texture that falls on a plane at the solid's mean height.
+layout(binding = 13) uniform sampler2DArray caustic_maps;
+layout(std430, binding = 2) readonly buffer CausticLayers { uint caustic_layer[]; };  // by triangle
 #endif
 in vec3 world_position;
 in vec3 world_normal;
@@ -89,6 +91,32 @@ struct Place {
   bool see_through; // the medium's own surface
 };
 
+#ifdef CAUSTICS
+// Irradiance under the medium: what its surface gathers here of a light, arriving as through a level one.
+vec3 gathered_irradiance(Ray frame, Place place, int i, vec3 to_light) {
+  vec3 p = place.p, bent, entry = p;
+  float rise = medium_height(tiling * (frame.uv + p.xy * frame.uv_per_metre)) - p.z;
+  // Where a near light's ray comes in depends on how it is bent there: by repeated substitution.
+  for (int k = kLightKinds[i] == kDirectional ? 3 : 0; k < 4; ++k) {
+    if (to_light.z <= 0.0) return vec3(0.0);
+    bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), outside_index / index);
+    if (bent.z <= 0.0) return vec3(0.0);
+    entry = p + rise / bent.z * bent;
+    light_irradiance(i, to_world_point(entry), to_light);
+    to_light = to_frame * to_light;
+  }
+  if (dot(place.n, bent) <= 0.0) return vec3(0.0);
+  Ray ray = Ray(p, bent, frame.uv, frame.uv_per_metre);
+  if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) return vec3(0.0);
+  // The maps are of the plane at the solid's mean height: where the light through here comes to it.
+  vec2 on_plane = uv_at(ray, (plane_height - p.z) / bent.z);
+  int layer = i * (textureSize(caustic_maps, 0).z / LIGHT_COUNT) + int(caustic_layer[gl_PrimitiveID]);
+  vec3 gathered = textureLod(caustic_maps, vec3(on_plane, float(layer)), 0.0).rgb * frame.uv_per_metre.x *
+                  frame.uv_per_metre.y;
+  return gathered * (dot(place.n, bent) / bent.z * object_visibility(i, entry, to_light));
+}
+#endif
+
 // The light that a place sends back of the lights' and the ambient light; the paper's SAMPLE. `occlusion`: of the first light.
 vec3 reflected_radiance(Ray frame, Place place, inout float occlusion) {
   vec3 p = place.p, sum = place.albedo * ambient_count.rgb;
@@ -98,16 +126,8 @@ vec3 reflected_radiance(Ray frame, Place place, inout float occlusion) {
     to_light = to_frame * to_light;
     float cosine = dot(place.n, to_light);
 #ifdef CAUSTICS
-    // Under a medium: what its surface gathers here, arriving as through a level one.
-    vec3 bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), outside_index / index);
-    if (place.side < 0.0 && kLightKinds[i] == kDirectional && to_light.z > 0.0 && bent.z > 0.0) {
-      // The maps are of the plane at the solid's mean height: where the light through here comes to it.
-      vec2 on_plane = frame.uv + (p.xy + bent.xy / bent.z * (plane_height - p.z)) * frame.uv_per_metre;
-      vec3 gathered = textureLod(caustic_maps, vec3(on_plane * tiling, float(i)), 0.0).rgb;
-      Ray ray = Ray(p, bent, frame.uv, frame.uv_per_metre);
-      if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) gathered = vec3(0.0);
-      sum += irradiance * place.albedo * gathered *
-             (to_light.z * max(dot(place.n, bent), 0.0) / bent.z * object_visibility(i, p, to_light));
+    if (place.side < 0.0) {
+      sum += place.albedo * gathered_irradiance(frame, place, i, to_light) / kPi;
       continue;
     }
 #endif
@@ -250,15 +270,8 @@ vec3 seen_radiance(Ray frame, vec3 p, vec3 v, bool on_medium, out float occlusio
 }
 
 void main() {
-  vec3 n = normalize(world_normal);
-  vec3 u = world_over_u - n * dot(n, world_over_u);
-  vec2 metres = vec2(length(u), 0.0);
-  u /= metres.x;
-  vec3 w = cross(n, u);
-  metres.y = dot(w, world_over_v);
-  if (metres.y < 0.0) w = -w;
-  metres.y = abs(metres.y);
-  to_frame = transpose(mat3(u, w, n));
+  vec2 metres;
+  to_frame = surface_frame(normalize(world_normal), world_over_u, world_over_v, metres);
   vec3 v = to_frame * normalize(world_position - eye);
   v.z = min(v.z, -1e-4);  // an interpolated normal may look away
   v = normalize(v);

@@ -164,6 +164,7 @@ void ReliefPass::draw(const Scene& scene, const Camera& camera, const ForwardPas
 void ReliefPass::draw_caustics(const Scene& scene, int index, const Camera& camera, const ForwardPass& forward) {
   const Instance& instance = scene.instances[static_cast<std::size_t>(index)];
   Caustics& caustics = caustics_[index];
+  forward.bind_lights();
   caustics.update(scene, instance, parameters_.caustic_resolution,
                   defines(scene.reliefs[static_cast<std::size_t>(instance.relief)], forward),
                   [&](const gl::Program& program) { set_uniforms(scene, instance, camera, program); });

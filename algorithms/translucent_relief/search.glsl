@@ -10,6 +10,19 @@ struct Ray {
   vec2 uv_per_metre;
 };
 
+// Rows along u, along v, and the unit normal, of a point where a unit of the mesh's u and v is so long; `metres`: how long
+// in the frame, which leaves the texture's shear out.
+mat3 surface_frame(vec3 n, vec3 over_u, vec3 over_v, out vec2 metres) {
+  vec3 u = over_u - n * dot(n, over_u);
+  metres.x = length(u);
+  u /= metres.x;
+  vec3 v = cross(n, u);
+  metres.y = dot(v, over_v);
+  if (metres.y < 0.0) v = -v;
+  metres.y = abs(metres.y);
+  return transpose(mat3(u, v, n));
+}
+
 vec2 uv_at(Ray ray, float t) { return ray.uv + (ray.origin.xy + t * ray.direction.xy) * ray.uv_per_metre; }
 float z_at(Ray ray, float t) { return ray.origin.z + t * ray.direction.z; }
 

@@ -99,13 +99,14 @@ struct Parameters {
                               .when = Change::program});
     visit(PARAM(caustics),
           {.cite = "Sec. 4.1, future work",
-           .doc = "let the medium's surface gather directional lights on the solid under it, on flat meshes, "
-                  "in place of straight light rays there",
+           .doc = "let the medium's surface gather the lights on the solid under it, in place of straight light "
+                  "rays there; needs meshes whose texture coordinates lie in [0, 1]",
            .when = Change::program});
     visit(PARAM(caustic_resolution),
           {.range = {16, 1024},
            .cite = "beyond the paper",
-           .doc = "texels along a side of the maps of that light; its grid has half as many cells",
+           .doc = "texels of the maps of that light along a side of the mesh's texture; its grid has half as many "
+                  "cells",
            .unit = "texels"});
     visit(PARAM(object_steps),
           {.range = {0, 1024},

@@ -86,37 +86,6 @@ TEST(TranslucentRelief, FlatLayerInClosedForm) {
   }
 }
 
-// Under a level surface nothing is gathered: the light is what Snell, Fresnel and absorption leave of it, bent.
-TEST(TranslucentRelief, CausticsOfALevelSurfaceInClosedForm) {
-  Relief relief;
-  relief.cut = false;
-  relief.solid = flat_layer(-0.25F, -0.5F);
-  relief.solid.albedo = glm::vec3(0.8F);
-  relief.translucent = flat_layer(-0.05F, -0.5F);
-  relief.absorption = {1.0F, 2.0F, 5.0F};
-  Scene scene = relief_scene(relief);
-  const Camera camera{scene.views[0], 96, 72};
-  const Image image = frame(relief_scene(relief), settings({{"caustics", "true"}, {"caustic_resolution", "64"}}));
-  const double index = 1.33, inner_light = std::sqrt(1 - 0.36 / (index * index));
-  double worst = 0;
-  for (int y = 24; y < 48; ++y) {
-    for (int x = 32; x < 64; ++x) {
-      const double cosine = -camera.ray_direction(x + 0.5, y + 0.5).y;
-      const double inner = std::sqrt(1 - (1 - cosine * cosine) / (index * index));
-      const double reflected_share = fresnel_dielectric(cosine, 1 / index);
-      for (int c = 0; c < 3; ++c) {
-        const double absorption = static_cast<double>(relief.absorption[c]);
-        const double light = (1 - fresnel_dielectric(0.8, 1 / index)) * std::exp(-absorption * 0.2 / inner_light) *
-                             static_cast<double>(scene.lights[0].intensity[c]) * 0.8 / std::numbers::pi;
-        const double expected = (1 - reflected_share) * std::exp(-absorption * 0.2 / inner) * 0.8 * (0.2 + light) +
-                                reflected_share * static_cast<double>(scene.environment.zenith[c]);
-        worst = std::max(worst, std::abs(static_cast<double>(image.at(x, y)[c]) - expected));
-      }
-    }
-  }
-  EXPECT_LT(worst, 1e-3) << "the maps are of half floats";
-}
-
 // A flat ground of 2 × 2 m, seen along it, under air whose squared index rises from 1 linearly by `rise` over its
 // height.
 Scene mirage_scene(float height_m, float rise) {
