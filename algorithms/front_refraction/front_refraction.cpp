@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/raster/environment_alone.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 #include "algorithms/raster/mirror.hpp"
 #include "gl/program.hpp"
@@ -15,7 +16,7 @@ namespace {
 class FrontRefraction final : public Technique {
  public:
   ParameterRef parameters() override { return bind_parameters(parameters_); }
-  void prepare(const Scene&) override {}
+  void prepare(const Scene& scene) override { warn_of_black_environment(scene, "front_refraction"); }
 
   void render(const Scene& scene, const Camera& camera, ForwardPass& forward, const Target& target,
               gl::PassTimer& timer) override {

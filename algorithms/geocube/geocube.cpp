@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/geocube/glass_pass.hpp"
+#include "algorithms/raster/environment_alone.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 
 namespace pellucid::geocube {
@@ -21,6 +22,7 @@ class Geocube final : public Technique {
   ParameterRef parameters() override { return bind_parameters(parameters_); }
 
   void prepare(const Scene& scene) override {
+    warn_of_black_environment(scene, "geocube");
     frame_.reset();
     pass_.prepare(scene);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/raster/environment_alone.hpp"
 #include "algorithms/raster/forward_pass.hpp"
 #include "algorithms/raster/mirror.hpp"
 #include "algorithms/reference/geometry.hpp"
@@ -48,6 +49,7 @@ class ScreenSpaceRefraction final : public Technique {
   ParameterRef parameters() override { return bind_parameters(parameters_); }
 
   void prepare(const Scene& scene) override {
+    warn_of_black_environment(scene, "screen_space_refraction");
     objects_.clear();
     objects_.resize(scene.meshes.size());
     for (const Instance& instance : scene.instances) {

@@ -179,7 +179,7 @@ void add_render(cli::App& root, std::vector<Command>& commands) {
   render_app->add_option("--tev", options->tev, "HOST:PORT of a tev or HDRView window that shows the picture too");
   render_app->footer(
       "Example: pellucid render fog_forest -t volume_slices -s slices=64 -o fog.png\n"
-      "         pellucid render glass_room -t front_refraction --frames 0:120 --fps 30 -o room.%04d.exr\n"
+      "         pellucid render spheres_hall -t environment_map --frames 0:120 --fps 30 -o hall.%04d.exr\n"
       "An EXR carries what made it: pellucid reproduce fog.exr -o DIR renders it again.");
   commands.push_back({render_app, [options] { return render(*options); }});
 }

@@ -254,6 +254,18 @@ TEST_F(Render, ReadsAnotherColourConfigAndRefusesABrokenOne) {
   EXPECT_TRUE(succeeded(render(folder / "out.exr", {}, {.environment = {{"OCIO", broken.string()}}})));
 }
 
+TEST_F(Render, TellsThatGlassShowsABlackEnvironment) {
+  const auto draw = [&](const std::string& of, const std::string& technique) {
+    return pellucid({"render", of, "-t", technique, "--size", "8x8", "-o", (folder / "o.exr").string()});
+  };
+  // A room without a sky: a technique that sees the environment alone draws its ball black, one that sees the room does
+  // not.
+  const Outcome black = draw("glass_room", "front_refraction"), room = draw("glass_room", "environment_map");
+  ASSERT_TRUE(succeeded(black) && succeeded(room));
+  EXPECT_NE(black.err.find("warning: front_refraction shows the environment alone"), std::string::npos) << black.err;
+  EXPECT_EQ(room.err.find("warning"), std::string::npos) << room.err;
+}
+
 TEST_F(Render, AShaderOverriddenFromDiskIsUsedAndItsErrorsNameTheLine) {
   const auto overrides = folder / "shaders";
   std::filesystem::create_directories(overrides / "algorithms/shaders");
