@@ -1,0 +1,1 @@
+// A library needs a file; what precompiled.hpp declares is compiled in precompiled.cpp.
