@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "algorithms/geocube/search.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {
@@ -75,10 +76,10 @@ std::vector<float> with_borders(const CubeGrid& grid, const std::vector<glm::vec
 CubeTextures::CubeTextures(const std::string& label, const CubeSet& set) : set_(set) {
   const std::size_t bytes = texture_bytes(set.options, set.cubes.size()), limit = device_bytes();
   if (bytes > limit) {
-    throw InputError(
-        fmt::format("geocube: {} cube{} of {} texels and {} layer{} take {} MiB of textures; the device has {} MiB",
-                    set.cubes.size(), set.cubes.size() == 1 ? "" : "s", set.options.resolution, set.options.layers,
-                    set.options.layers == 1 ? "" : "s", bytes >> 20U, limit >> 20U));
+    throw InputError(fmt::format("geocube: {} of {} texels and {} take {} MiB of textures; the device has {} MiB",
+                                 counted(set.cubes.size(), "cube"), set.options.resolution,
+                                 counted(static_cast<std::size_t>(set.options.layers), "layer"), bytes >> 20U,
+                                 limit >> 20U));
   }
   bounds_ = make_map(label + " bounds", set, &CubeLayer::bounds);
   planes_ = make_map(label + " planes", set, &CubeLayer::planes);

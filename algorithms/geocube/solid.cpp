@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "algorithms/geocube/weld.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid::geocube {
@@ -41,9 +42,8 @@ std::string where_open(const Welded& surface, const Topology& found) {
   glm::dvec3 middle(0.0);
   for (const std::uint32_t corner : *largest)
     middle += surface.positions[corner] / static_cast<double>(largest->size());
-  return fmt::format("it is open: {} hole{}, {} border edges, the largest hole ({} edges) near {}",
-                     found.borders.size(), found.borders.size() == 1 ? "" : "s", found.open_edges, largest->size(),
-                     place(middle));
+  return fmt::format("it is open: {}, {} border edges, the largest hole ({} edges) near {}",
+                     counted(found.borders.size(), "hole"), found.open_edges, largest->size(), place(middle));
 }
 
 }  // namespace

@@ -38,6 +38,27 @@ RTCRay in_single_precision(const Ray& from) {
   return ray;
 }
 
+// Embree 4 asks for no context.
+#if RTC_VERSION_MAJOR >= 4
+void intersect(RTCScene scene, RTCRayHit& query) {
+  rtcIntersect1(scene, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  rtcOccluded1(scene, &ray);
+}
+#else
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
 }  // namespace
 
 void Release::operator()(RTCDeviceTy* device) const {
@@ -102,26 +123,14 @@ std::optional<Hit> nearest(const Bvh& bvh, const Ray& ray) {
   query.ray = in_single_precision(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(bvh.get(), &query);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(bvh.get(), &context, &query);
-#endif
+  intersect(bvh.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return Hit{query.hit.instID[0], query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v};
 }
 
 bool occluded(const Bvh& bvh, const Ray& from) {
   RTCRay ray = in_single_precision(from);
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(bvh.get(), &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(bvh.get(), &context, &ray);
-#endif
+  occlude(bvh.get(), ray);
   return ray.tfar < 0.0F;  // Embree's mark of a hit
 }
 

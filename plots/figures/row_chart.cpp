@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 #include "plots/charts/style.hpp"
 
@@ -325,7 +326,7 @@ class RowsChart {
     }
     if (chosen_) add(wanted_.join_note);
     if (wanted_.labels == Labels::unusual) add(usual_note(rows_, own));
-    if (zeros_ > 0) add(fmt::format("{} at 0 left out.", zeros_ == 1 ? "1 point" : fmt::format("{} points", zeros_)));
+    if (zeros_ > 0) add(fmt::format("{} at 0 left out.", counted(zeros_, "point")));
     if (wanted_.reference_error) add(reference_note());
   }
 

@@ -2,6 +2,7 @@
 #include "sweeps/bench/bench.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/bare_frame.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/images/frame_size.hpp"
 #include "algorithms/technique.hpp"
 #include "gl/context.hpp"
@@ -118,9 +120,10 @@ void print_reference(const BenchReference& reference) {
   print_time("the reference's tracing", reference.trace);
   print_ratio("reference / frame", reference.ratio);
   fmt::print(
-      "  {:<34} {:9.3f}     one tree per pixel, up to {} interface{} along a path; without building the hierarchy "
+      "  {:<34} {:9.3f}     one tree per pixel, up to {} along a path; without building the hierarchy "
       "({:.3g} ms)\n",
-      "rays per pixel", reference.rays_per_pixel, reference.depth, reference.depth == 1 ? "" : "s", reference.build_ms);
+      "rays per pixel", reference.rays_per_pixel, counted(static_cast<std::size_t>(reference.depth), "interface"),
+      reference.build_ms);
 }
 
 ordered_json ceilings_json(const std::vector<sweeps::Ceiling>& ceilings) {

@@ -88,10 +88,6 @@ class Adversity : public testing::Test {
   SweepSummary summary;
 };
 
-void wait_ms(int ms) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-}
-
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t n = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
@@ -107,9 +103,9 @@ TEST_F(Adversity, AClockThatIsSetMovesNoTime) {
   offsets.realtime_s = 0;
 
   std::thread somebody([] {
-    wait_ms(200);
+    sleep_ms(200);
     offsets.realtime_s = 3600.5;  // half a second more, since times are rounded up to be shown
-    wait_ms(300);
+    sleep_ms(300);
     offsets.realtime_s = -3600;
   });
   const std::string said = run("n = [1, 2, 3, 4]\nsleep_ms = [200]\n");
@@ -174,7 +170,7 @@ TEST_F(Adversity, AStoppedWorkerIsToldAndCostsItsPoint) {
 TEST_F(Adversity, AStoppedWorkerThatIsLetGoOnCostsNothing) {
   bool over = false;
   std::thread somebody([&] {
-    for (int i = 0; i < 300 && !over; ++i, wait_ms(20)) {
+    for (int i = 0; i < 300 && !over; ++i, sleep_ms(20)) {
       std::ifstream file("/proc/self/task/" + std::to_string(::getpid()) + "/children");
       for (pid_t child = 0; file >> child;) {
         std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
@@ -183,7 +179,7 @@ TEST_F(Adversity, AStoppedWorkerThatIsLetGoOnCostsNothing) {
         std::string state;
         stat >> number >> name >> state;
         if (state != "T") continue;
-        wait_ms(1200);  // the parent is to notice first
+        sleep_ms(1200);  // the parent is to notice first
         ::kill(child, SIGCONT);
         over = true;
       }

@@ -32,10 +32,6 @@ void say(const json& message) {
   std::cout << to_line(message) << std::endl;
 }
 
-void sleep_ms(int ms) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-}
-
 /// Speaks the protocol without GL and does to each point what its parameter `does` asks for.
 int fake_worker(const std::string& log, const std::string& device) {
   say({{"type", "hello"}, {"protocol", kProtocol}, {"device", device}, {"driver", "1.0"}, {"clock", "finish"}});
@@ -104,6 +100,10 @@ int fake_sweep(const std::string& store, const std::string& log, int points, int
 }
 
 }  // namespace
+
+void sleep_ms(int ms) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+}
 
 std::vector<std::string> self(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), std::filesystem::read_symlink("/proc/self/exe").string());

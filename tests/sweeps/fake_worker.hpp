@@ -11,6 +11,8 @@ std::vector<std::string> self(std::vector<std::string> arguments);
 /// Writes rows to a store beside others that do (writers_test.cpp).
 int run_writer(const std::string& store, int first);
 
+void sleep_ms(int ms);
+
 /// Runs what main() was asked for instead of the tests.
 int run_role(const std::vector<std::string>& arguments);
 

@@ -49,6 +49,11 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string counted(std::size_t n, std::string_view noun, std::string_view plural) {
+  if (n == 1) return fmt::format("1 {}", noun);
+  return plural.empty() ? fmt::format("{} {}s", n, noun) : fmt::format("{} {}", n, plural);
+}
+
 void tell_line(std::string_view line) {
   fmt::print(stderr, "{}\n", printable(line));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,9 @@ namespace pellucid {
 /// The text as one line of UTF-8 without control characters: a name may hold line ends, what a terminal obeys, or bytes
 /// of another encoding. They become \n, \t and \x1b.
 std::string printable(std::string_view text);
+
+/// "1 face", "2 faces"; `plural` where it is not the noun and an s.
+std::string counted(std::size_t n, std::string_view noun, std::string_view plural = {});
 
 /// Prints one printable line to standard error.
 void tell_line(std::string_view line);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/meshes/mesh_file.hpp"
 
 namespace pellucid {
@@ -175,7 +176,9 @@ void Faces::triangulate(const fs::path& path, RawMesh& mesh) const {
     else
       add_polygon(path, polygon, mesh);
   }
-  if (left_out > 0) mesh.warnings.push_back(fmt::format("{} faces of fewer than three corners are left out", left_out));
+  if (left_out > 0)
+    mesh.warnings.push_back(fmt::format("{} of fewer than three corners {} left out", counted(left_out, "face"),
+                                        left_out == 1 ? "is" : "are"));
 }
 
 }  // namespace pellucid

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/meshes/raw_mesh.hpp"
 #include "algorithms/scene/meshes/text_lines.hpp"
 
@@ -66,7 +67,8 @@ class ObjReader {
       mesh_.warnings.emplace_back("only some of its vertices have colours; they are left out");
     }
     if (elements_left_out_ > 0)
-      mesh_.warnings.push_back(fmt::format("{} points and lines are left out", elements_left_out_));
+      mesh_.warnings.push_back(
+          fmt::format("{} left out", counted(elements_left_out_, "point or line is", "points and lines are")));
     faces_.triangulate(path_, mesh_);
     return std::move(mesh_);
   }

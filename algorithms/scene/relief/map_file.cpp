@@ -15,6 +15,7 @@
 #include <vtkNew.h>
 #include <vtkTGAReader.h>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "gl/error.hpp"
 
 namespace pellucid {
@@ -71,7 +72,8 @@ Image height_map(const ImageFile& file, MapChannel channel) {
   const Image& image = file.image;
   const int wanted = static_cast<int>(channel);
   if (wanted >= image.channels && !(image.channels == 2 && channel == MapChannel::alpha)) {
-    throw InputError(fmt::format("it has {} channel{}, and none is {}", image.channels, image.channels == 1 ? "" : "s",
+    throw InputError(fmt::format("it has {}, and none is {}",
+                                 counted(static_cast<std::size_t>(image.channels), "channel"),
                                  std::array{"red", "green", "blue", "alpha"}[static_cast<std::size_t>(wanted)]));
   }
   const int at = std::min(wanted, image.channels - 1);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/scene/files/tell.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/workers/progress.hpp"
 
@@ -119,8 +120,7 @@ void print_dry_run(const Spec& spec, const Plan& plan, const std::string& store,
   print_blocks(count_blocks(spec, plan, stored));
   fmt::print("\n");
   for (const Skipped& skipped : plan.skipped) {
-    fmt::print("left out of block {}: {} point{}, by {}\n", skipped.block, skipped.points,
-               skipped.points == 1 ? "" : "s", skipped.why);
+    fmt::print("left out of block {}: {}, by {}\n", skipped.block, counted(skipped.points, "point"), skipped.why);
   }
   fmt::print("{} distinct points, {} to measure", plan.points.size(), left);
   if (pace.known() && left > 0) fmt::print("; about {} at the stored points' pace", duration_text(expected_s));

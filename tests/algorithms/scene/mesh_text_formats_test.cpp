@@ -128,7 +128,7 @@ TEST_F(TextMeshes, DamagedObjIsRefused) {
     EXPECT_EQ(refusal("a.obj", box + cut), "the file ends inside a face, in line 15") << cut;
   EXPECT_EQ(refusal("a.obj", obj("vt 0 0\n", {"{}/1"}) + "f 1/1 2/1 3/"), "the file ends inside a face, in line 16");
   EXPECT_EQ(expect_box("a.obj", box + "f 1 2\n").warnings,
-            std::vector<std::string>{"1 faces of fewer than three corners are left out"});
+            std::vector<std::string>{"1 face of fewer than three corners is left out"});
   EXPECT_EQ(refusal("a.obj", "hello\n"), "'hello' is no statement of OBJ in line 1");
 }
 
