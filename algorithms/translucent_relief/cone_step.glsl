@@ -1,10 +1,11 @@
-// Rays against a height field through a map of empty cones (Dummer 2006), which cone_map() makes (height_pyramid.cpp).
-// The includer defines above() of search.glsl and cone_at().
+// Rays against a height field through a map of empty cones (Dummer 2006), which cone_map() makes, or of relaxed ones (Policarpo
+// and Oliveira 2007) by relaxed_cone_map() (height_pyramid.cpp). The includer defines above() of search.glsl and cone_at().
 
-// As linear_crossing(), from above only, through a map of empty cones (Dummer 2006): `cone` gives their width over their
-// height at a point of the mesh's texture, both in units of the map; `range_m` is the layer's height and `tiles` as often
-// as the map repeats. The chord of the last bracket follows where a step ends in the surface.
-float cone_at(int layer, vec2 at);
+// As linear_crossing(), from above only, through a map of cones: cone_at() gives their width over their height at a point of
+// the mesh's texture, both in units of the map, for rays that rise or fall; `range_m` is the layer's height and `tiles` as
+// often as the map repeats. Where a step ends in the surface, as it may in a relaxed cone, halving and the chord of the last
+// bracket follow.
+float cone_at(int layer, vec2 at, bool falls);
 float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, float bias, int steps, int refinements,
                     inout float taken) {
   if (!(range.x < range.y)) return -1.0;
@@ -32,7 +33,7 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
     }
     before = t;
     height_before = max(height, 0.0);
-    float closing = across / max(cone_at(layer, tiles * uv_at(ray, t)), 1e-4) - upward;
+    float closing = across / max(cone_at(layer, tiles * uv_at(ray, t), upward < 0.0), 1e-4) - upward;
     float step = closing > 0.0 ? height_before / range_m / closing : range.y;
     t += max(step, least);
     if (t >= range.y) {

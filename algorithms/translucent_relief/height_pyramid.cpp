@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/glm.hpp>
 #include <tbb/parallel_for.h>
 
 #include "gl/error.hpp"
@@ -36,6 +38,72 @@ Image reduced(Image heights, bool greatest) {
     heights = std::move(half);
   }
   return heights;
+}
+
+// Three periods of a map each way, so that nothing within one of the middle need be wrapped.
+Image repeated(const Image& heights) {
+  Image tiles(3 * heights.width, 3 * heights.height, 1);
+  for (int y = 0; y < tiles.height; ++y) {
+    for (int x = 0; x < tiles.width; ++x)
+      *tiles.at(x, y) = *heights.at(x % heights.width, y % heights.height);
+  }
+  return tiles;
+}
+
+// Bilinear, at a place in texels that lies inside.
+float sample(const Image& image, float x, float y) {
+  const int i = static_cast<int>(x), k = static_cast<int>(y);
+  const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(k);
+  const float *low = image.at(i, k), *high = low + image.width;
+  const float below = low[0] + fx * (low[1] - low[0]), above = high[0] + fx * (high[1] - high[0]);
+  return below + fy * (above - below);
+}
+
+/// Intervals of slopes, none of which touches another.
+class Slopes {
+ public:
+  bool hold(float low, float high) const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [&](const auto& part) { return part.first <= low && high <= part.second; });
+  }
+  void add(float low, float high) {
+    std::erase_if(parts_, [&](const auto& part) {
+      if (part.second < low || part.first > high) return false;
+      low = std::min(low, part.first);
+      high = std::max(high, part.second);
+      return true;
+    });
+    parts_.emplace_back(low, high);
+  }
+  void clear() { parts_.clear(); }
+
+ private:
+  std::vector<std::pair<float, float>> parts_;
+};
+
+// The widest relaxed cone on `apex` along one direction, at most `best`. A ray from `origin` over the apex that falls
+// by m per unit is in the solid where m exceeds (origin - height) / distance: it leaves where that rises over m again,
+// and where it does so for the first time the cone must end. `heights`: repeated, (x, y) in the middle.
+float relaxed_cone(const Image& heights, int x, int y, float apex, float origin, const glm::vec2& texels_per_step,
+                   float step, float best, Slopes& left) {
+  left.clear();
+  float before = 0, height_before = apex;
+  for (int i = 1; static_cast<float>(i) * step < best * (1.0F - apex); ++i) {
+    const float away = static_cast<float>(i) * step;
+    const float height = sample(heights, static_cast<float>(x) + static_cast<float>(i) * texels_per_step.x,
+                                static_cast<float>(y) + static_cast<float>(i) * texels_per_step.y);
+    const float slope = std::max((origin - height) / away, 0.0F);
+    if (i > 1 && slope > before) {
+      if (!left.hold(before, slope)) {
+        if (height > apex) best = std::min(best, away / (height - apex));
+        if (height_before > apex) best = std::min(best, (away - step) / (height_before - apex));
+      }
+      left.add(before, slope);
+    }
+    before = slope;
+    height_before = height;
+  }
+  return best;
 }
 
 }  // namespace
@@ -106,6 +174,34 @@ Image cone_map(const Image& given) {
         }
       }
       *cones.at(x, y) = best;
+    }
+  });
+  return cones;
+}
+
+Image relaxed_cone_map(const Image& given) {
+  constexpr int kDirections = 32, kOrigins = 4;
+  const Image heights = reduced(given, true), apexes = reduced(given, false), empty = cone_map(given);
+  const Image tiles = repeated(heights);
+  const glm::vec2 texels(heights.width, heights.height);
+  const float step = 1.0F / std::max(texels.x, texels.y);
+  Image cones(heights.width, heights.height, 2);
+  tbb::parallel_for(0, heights.height, [&](int y) {
+    Slopes left;
+    for (int x = 0; x < heights.width; ++x) {
+      float best = 1.0F;
+      for (int i = 0; i < kDirections; ++i) {
+        const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kDirections);
+        const glm::vec2 texels_per_step = step * texels * glm::vec2(std::cos(angle), std::sin(angle));
+        const float apex = *apexes.at(x, y);
+        for (int k = 1; k <= kOrigins; ++k) {
+          const float origin = apex + (1.0F - apex) * static_cast<float>(k) / static_cast<float>(kOrigins);
+          best = relaxed_cone(tiles, heights.width + x, heights.height + y, apex, origin, texels_per_step, step, best,
+                              left);
+        }
+      }
+      cones.at(x, y)[0] = *empty.at(x, y);
+      cones.at(x, y)[1] = std::max(best, *empty.at(x, y));
     }
   });
   return cones;

@@ -18,4 +18,10 @@ std::vector<Image> height_pyramid(const Image& heights);
 inline constexpr int kMostConeTexels = 256;
 Image cone_map(const Image& heights);
 
+/// Two channels: cone_map(), for rays that rise, and the ratio of the widest relaxed cone, for rays that fall
+/// (Policarpo and Oliveira 2007): one in which a ray goes into the solid and does not come out again, at most 1. Exact
+/// over the rays that are asked: from four heights over the texel, in 32 directions, a texel at a time; in a reduced
+/// map features smaller than its texels are not seen.
+Image relaxed_cone_map(const Image& heights);
+
 }  // namespace pellucid::translucent_relief

@@ -14,7 +14,7 @@ layout(binding = 6) uniform sampler2D medium_normals;
 uniform vec2 medium_range;
 uniform bool medium_normal_map;
 #endif
-// The search reads these: greatest and least heights by level, or empty cones.
+// The search reads these: greatest and least heights by level, or cones.
 layout(binding = 8) uniform sampler2D solid_acceleration;
 layout(binding = 9) uniform sampler2D medium_acceleration;
 uniform vec2 tiling;
@@ -86,15 +86,20 @@ vec4 corners(int layer, ivec2 cell) {
   FETCHED(solid_fetches[ray_kind], 1);
   return solid_range.x + solid_range.y * textureGather(solid_heights, middle).wzxy;
 }
-float cone_at(int layer, vec2 at) {
+float cone_at(int layer, vec2 at, bool falls) {
+#if SEARCH == 3
+  int which = falls ? 1 : 0;
+#else
+  const int which = 0;
+#endif
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
     FETCHED(medium_fetches[ray_kind], 1);
-    return textureLod(medium_acceleration, at, 0.0).r;
+    return textureLod(medium_acceleration, at, 0.0)[which];
   }
 #endif
   FETCHED(solid_fetches[ray_kind], 1);
-  return textureLod(solid_acceleration, at, 0.0).r;
+  return textureLod(solid_acceleration, at, 0.0)[which];
 }
 float range_of(int layer) {
 #ifdef TWO_LAYERS

@@ -34,7 +34,7 @@ float find_crossing(int layer, Ray ray, float from, float side, int kind) {
   int steps = steps_of(kind, ray), halvings = int(refinements[kind]);
   vec2 bounds = bounds_of(layer);
   float bias = 1e-5 * (bounds.y - bounds.x);
-#if SEARCH == 2
+#if SEARCH >= 2
   if (side > 0.0 && layer != kEither)
     t = cone_crossing(layer, ray, tiling, range_of(layer), range, bias, steps, halvings, count);
   else

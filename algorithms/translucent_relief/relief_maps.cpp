@@ -64,6 +64,8 @@ void ReliefMaps::upload(const ReliefLayer& from, Search search, Animation* anima
       to.acceleration.upload(levels[i].pixels, static_cast<int>(i));
   } else if (search == Search::cone_step) {
     to.acceleration = make_map("relief cones", gl::Format::r32f, cone_map(from.heights));
+  } else if (search == Search::relaxed_cone_step) {
+    to.acceleration = make_map("relief cones", gl::Format::rg32f, relaxed_cone_map(from.heights));
   }
 }
 

@@ -8,7 +8,7 @@
 namespace pellucid::translucent_relief {
 
 enum class Mapping { normal, relief };
-enum class Search { linear, max_mip, cone_step };
+enum class Search { linear, max_mip, cone_step, relaxed_cone_step };
 enum class Motion { gpu, scene };
 enum class Boxes { shared, separate };
 enum class LocalRays { traced, planar_reflections, planar };
@@ -62,11 +62,12 @@ struct Parameters {
                               .doc = "let the medium absorb light on the way to the eye and, with occlusion, from the "
                                      "lights",
                               .when = Change::program});
-    visit(PARAM(search), {.cite = "Sec. 2; Tevs et al. 2008; Dummer 2006",
+    visit(PARAM(search), {.cite = "Sec. 2; Tevs et al. 2008; Dummer 2006; Policarpo and Oliveira 2007",
                           .doc = "how rays look for the layers: by equal steps; exactly, through a pyramid of greatest "
-                                 "and least heights; or from empty cone to empty cone",
+                                 "and least heights; from empty cone to empty cone; or, where rays fall, through cones "
+                                 "that may end in the solid",
                           .when = Change::precompute,
-                          .choices = "linear|max_mip|cone_step"});
+                          .choices = "linear|max_mip|cone_step|relaxed_cone_step"});
     visit(PARAM(boxes),
           {.cite = "Sec. 3",
            .doc = "search view rays in one bounding box for both layers, or in each layer's own, as other searches "

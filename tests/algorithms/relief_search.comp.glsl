@@ -1,4 +1,4 @@
-// Searches over a field in a texture: by equal steps, through a pyramid, through empty cones.
+// Searches over a field in a texture: by equal steps, through a pyramid, through cones.
 #include "algorithms/translucent_relief/search.glsl"
 #include "algorithms/translucent_relief/cone_step.glsl"
 #include "algorithms/translucent_relief/max_mip.glsl"
@@ -15,7 +15,7 @@ struct Input {
   float pad[3];
 };
 struct Output {
-  float linear, taken, max_mip, cone;
+  float linear, taken, max_mip, cone, relaxed;
 };
 layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
 layout(std430, binding = 1) writeonly buffer Outputs { Output outputs[]; };
@@ -35,7 +35,8 @@ vec4 corners(int layer, ivec2 cell) {
 }
 ivec2 map_size(int layer) { return textureSize(heights, 0); }
 int pyramid_top(int layer) { return findMSB(textureSize(heights, 0).x); }
-float cone_at(int layer, vec2 at) { return textureLod(cones, at, 0.0).r; }
+const int kEmpty = 0, kRelaxed = 1;
+float cone_at(int layer, vec2 at, bool falls) { return textureLod(cones, at, 0.0)[layer == kRelaxed && falls ? 1 : 0]; }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
@@ -46,6 +47,7 @@ void main() {
   float taken = 0.0, unused = 0.0;
   float linear = linear_crossing(0, ray, vec2(1.0), range, q.side, 1e-6, int(q.steps), int(q.refinements), taken);
   float max_mip = max_mip_crossing(0, ray, vec2(1.0), range, q.side, 4096, unused);
-  float cone = cone_crossing(0, ray, vec2(1.0), kRange, range, 1e-6, 256, 8, unused);
-  outputs[i] = Output(linear, taken, max_mip, cone);
+  float cone = cone_crossing(kEmpty, ray, vec2(1.0), kRange, range, 1e-6, 256, 8, unused);
+  float relaxed = cone_crossing(kRelaxed, ray, vec2(1.0), kRange, range, 1e-6, 256, 12, unused);
+  outputs[i] = Output(linear, taken, max_mip, cone, relaxed);
 }

@@ -250,7 +250,7 @@ TEST(TranslucentRelief, MapsOfOneTexelByEverySearch) {
   relief.solid = flat_layer(-0.2F, -0.3F);
   relief.translucent = flat_layer(-0.05F, -0.3F);
   const Image expected = truth(relief_scene(relief), 96, 72);
-  for (const char* search : {"linear", "max_mip", "cone_step"}) {
+  for (const char* search : {"linear", "max_mip", "cone_step", "relaxed_cone_step"}) {
     // The edge of the mesh, where a rounding tells whether a ray leaves it, is a few pixels.
     EXPECT_LT(difference(frame(relief_scene(relief), settings({{"search", search}})), expected).mean, 2e-4) << search;
   }

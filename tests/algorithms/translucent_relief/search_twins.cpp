@@ -28,7 +28,7 @@ struct SearchInput {
   float side, steps, refinements, pad[3];
 };
 struct SearchOutput {
-  float linear, taken, max_mip, cone;
+  float linear, taken, max_mip, cone, relaxed;
 };
 
 constexpr int kTexels = 32;
@@ -72,8 +72,8 @@ class ReliefSearch : public testing::Test {
     for (std::size_t i = 0; i < levels.size(); ++i)
       pyramid.upload(levels[i].pixels, static_cast<int>(i));
     pyramid.bind(4);
-    gl::Texture cones = gl::Texture::make_2d("cones", gl::Format::r32f, kTexels, kTexels);
-    cones.upload(translucent_relief::cone_map(field).pixels);
+    gl::Texture cones = gl::Texture::make_2d("cones", gl::Format::rg32f, kTexels, kTexels);
+    cones.upload(translucent_relief::relaxed_cone_map(field).pixels);
     cones.set_sampling(gl::Filter::linear, gl::Wrap::repeat);
     cones.bind(5);
     in = search_inputs();
@@ -126,7 +126,7 @@ TEST_F(ReliefSearch, ThePyramidIsExact) {
 
 TEST_F(ReliefSearch, ConesStopAtTheSurface) {
   const HeightField exact(layer, glm::dvec2(1.0));
-  int hits = 0, missed = 0;
+  int hits = 0, missed = 0, missed_relaxed = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const SearchInput& q = in[i];
     if (q.side < 0) continue;
@@ -137,10 +137,12 @@ TEST_F(ReliefSearch, ConesStopAtTheSurface) {
     if (!truth) continue;
     ++hits;
     if (std::abs(static_cast<double>(out[i].cone) - *truth) > 3e-3) ++missed;
+    if (std::abs(static_cast<double>(out[i].relaxed) - *truth) > 3e-3) ++missed_relaxed;
   }
   EXPECT_GT(hits, 500);
   // The cones are of texel centres, and between them they are interpolated: a few steps are too long.
   EXPECT_LE(missed, hits / 50) << "of " << hits;
+  EXPECT_LE(missed_relaxed, hits / 50) << "of " << hits;
 }
 
 // A map that is too large is halved; the cones over any of its texels must be empty of the map that was given.
@@ -166,6 +168,42 @@ TEST(ReliefCones, OfReducedMapsAreEmpty) {
   }
   EXPECT_EQ(blocked, 0);
   EXPECT_GT(wide, 50) << "cones that are all narrow would be of no use";
+}
+
+// Falling rays from any height over a texel come out of the solid outside of its relaxed cone, if at all.
+TEST(ReliefCones, RelaxedOnesArePiercedOnce) {
+  constexpr int kSide = 64;
+  const Image field = test::random_field(kSide, 11, 4);
+  const ReliefLayer layer = test::layer_of(field, -1.0F, 0.0F);
+  const HeightField heights(layer, glm::dvec2(1.0));
+  const Image cones = translucent_relief::relaxed_cone_map(field);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  double empty = 0, relaxed = 0;
+  int left = 0, inside = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const int x = static_cast<int>(unit(random) * kSide), y = static_cast<int>(unit(random) * kSide);
+    const double apex = static_cast<double>(*field.at(x, y)), ratio = static_cast<double>(cones.at(x, y)[1]);
+    empty += static_cast<double>(cones.at(x, y)[0]);
+    relaxed += ratio;
+    const double angle = 6.2831853 * unit(random), origin = apex + (1 - apex) * unit(random), fall = 2 * unit(random);
+    const glm::dvec2 from = (glm::dvec2(x, y) + 0.5) / static_cast<double>(kSide);
+    bool entered = false;
+    for (double away = 0.002; away < 1; away += 0.002) {
+      const glm::dvec2 at = from + away * glm::dvec2(std::cos(angle), std::sin(angle));
+      const double height = heights.height_m(at) + 1, z = origin - fall * away;
+      if (z < 0) break;
+      entered = entered || z < height;
+      if (!entered || z < height || z <= apex) continue;
+      ++left;
+      inside += (away + 1.0 / kSide) / (z - apex) < ratio ? 1 : 0;
+      break;
+    }
+  }
+  EXPECT_GT(left, 500);
+  // Rays between the directions and heights that the map asks.
+  EXPECT_LE(inside, left / 50) << "of " << left;
+  EXPECT_GT(relaxed, 1.2 * empty);
 }
 
 }  // namespace
