@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -27,12 +29,6 @@ struct Patches {
   }
 };
 
-/// How far four patches lie outside a cone: their centres, and each of their points at least. Below 0: perhaps inside.
-struct Outside {
-  Four centre, least;
-  void leave_out(const FourFlags& these) { stdx::where(these, least) = 1; }
-};
-
 /// A cone that holds no point so far, with a half-angle of 90° at most. Its axis passes through the cube's centre.
 struct EmptyCone {
   glm::vec3 axis{0.0F};
@@ -44,53 +40,54 @@ struct EmptyCone {
     sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - c * c)));
   }
 
-  // How far each patch lies beyond the plane that touches the cone on the side of the patch's centre. A surface that
-  // touches the cone lies along that plane, and so counts by its thickness, which falls with the square of its size.
-  Outside outside(const Patches& patches) const {
+  // How far the points of each patch lie at least beyond the plane that touches the cone on the side of the patch's
+  // centre; below 0: perhaps inside. A surface that touches the cone lies along that plane, and so counts by its
+  // thickness, which falls with the square of its size.
+  Four outside(const Patches& patches) const {
     const FourVectors normal = touching_normal(patches.centre, axis, cosine, sine);
-    const Four centre = dot(normal, patches.centre) + sine * apex;
     const Four rounding = kRounding * (patches.size + sine * std::abs(apex));
-    return {centre, centre - patches.reach(normal) - rounding};
+    return dot(normal, patches.centre) + sine * apex - patches.reach(normal) - rounding;
   }
 };
 
-// Depth first, the most promising patch first. `outside(cell, cone)` tells how far the cell's quarters lie outside the
-// cone, `score(texel)` the cosine of a cone that the texel's point touches.
+// `outside(cell, cone)` tells how far the cell's quarters lie outside the cone, `score(texel)` the cosine of a cone
+// that the texel's point touches. A search begins with a `best` that little or nothing betters, so that the cells'
+// order is of no matter. They are taken by batches: no branch waits for a result, and the processor works at several
+// cells at a time.
 template <class OutsideOf, class Score>
 double search(const PatchTree& tree, EmptyCone cone, double best, std::size_t& found, OutsideOf outside, Score score) {
-  struct Waiting {
-    float outside = 0;
-    std::uint32_t cell = 0;
-  };
-  std::array<Waiting, 64> stack;  // three of each level and the roots
-  std::size_t depth = 0;
-  const auto push = [&](const Waiting& waiting, std::size_t base) {
-    std::size_t i = depth++;
-    for (; i > base && stack[i - 1].outside < waiting.outside; --i)
-      stack[i] = stack[i - 1];
-    stack[i] = waiting;
-  };
+  constexpr std::size_t kBatch = 16;
+  std::array<std::uint32_t, 1024> waiting;  // a batch leaves three times its number at most, once for each level
+  std::array<std::uint32_t, kBatch> cells;
+  std::array<unsigned, kBatch> inside;
+  std::size_t count = tree.roots().size();
+  std::ranges::copy(tree.roots(), waiting.begin());
   cone.narrow(best);
-  for (const std::uint32_t root : tree.roots())
-    push({0, root}, depth);
-  while (depth > 0) {
-    const std::uint32_t cell = stack[--depth].cell;
-    const Outside out = outside(cell, cone);
-    const FourFlags may_narrow = out.least < 0;
-    if (stdx::none_of(may_narrow)) continue;
-    const std::size_t base = depth;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (!may_narrow[k]) continue;
-      const std::uint32_t child = tree.quarters(cell).child[k];
-      if (!tree.lowest(cell)) {
-        push({out.centre[k], child}, base);
+  while (count > 0) {
+    const std::size_t batch = std::min(count, kBatch);
+    count -= batch;
+    assert(count + 4 * batch <= waiting.size());
+    for (std::size_t i = 0; i < batch; ++i) {
+      cells[i] = waiting[count + i];
+      inside[i] = bits_of(outside(cells[i], cone) < 0);
+    }
+    for (std::size_t i = 0; i < batch; ++i) {
+      const Quarters& quarters = tree.quarters(cells[i]);
+      if (!tree.lowest(cells[i])) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          waiting[count] = quarters.child[k];
+          count += inside[i] >> k & 1U;
+        }
         continue;
       }
-      const double value = score(child);
-      if (value <= best) continue;
-      best = value;
-      cone.narrow(best);
-      found = child;
+      for (unsigned left = inside[i]; left != 0; left &= left - 1) {
+        const std::uint32_t texel = quarters.child[static_cast<std::size_t>(std::countr_zero(left))];
+        const double value = score(texel);
+        if (value <= best) continue;
+        best = value;
+        cone.narrow(best);
+        found = texel;
+      }
     }
   }
   return best;
@@ -138,8 +135,8 @@ double cone_a_cosine(const ConeA& cone, const std::vector<const SheetTree*>& tre
       const Patches patches(surface->tree.quarters(cell));
       const Four along = dot(patches.centre, narrowest.axis) - narrowest.apex;
       const Four reach = patches.reach(narrowest.axis) + kRounding * (patches.size + height);
-      Outside result = narrowest.outside(patches);
-      result.leave_out(patches.size < 0 || along + reach < 0 || along - reach > height);
+      Four result = narrowest.outside(patches);
+      stdx::where(patches.size < 0 || along + reach < 0 || along - reach > height, result) = 1;
       return result;
     };
     best = search(surface->tree, empty, best, hint, outside,
@@ -163,13 +160,13 @@ double cone_b_inscribed(const ConeB& cone, const SheetTree& surface, const Sheet
     const Four rounding = kRounding * (patches.size + std::abs(offset));
     const Four off = stdx::abs(dot(patches.centre, normal) - offset) + patches.reach(normal) + rounding;
     const FourFlags keeps = off + Four(quarters.gap) < half_width;
-    if (stdx::all_of(keeps)) return Outside{1, 1};
     const Patches around(directions.tree.quarters(cell));
-    Outside result = narrowest.outside(around);
-    result.leave_out(keeps || around.size < 0);
+    Four result = narrowest.outside(around);
+    stdx::where(keeps || around.size < 0, result) = 1;
     return result;
   };
-  const double best = search(surface.tree, empty, std::max(score(hint), 0.0), hint, outside, score);
+  const double best =
+      search(surface.tree, empty, std::max(climb(surface.tree.n(), hint, score), 0.0), hint, outside, score);
   return std::min(best, 1.0);
 }
 

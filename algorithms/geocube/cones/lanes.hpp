@@ -15,6 +15,11 @@ namespace stdx = std::experimental;
 using Four = stdx::simd<float, stdx::simd_abi::deduce_t<float, 4>>;
 using FourFlags = Four::mask_type;
 
+/// A bit for each lane, the first one lowest.
+inline unsigned bits_of(const FourFlags& flags) {
+  return static_cast<unsigned>(flags.__to_bitset().to_ulong());  // libstdc++'s own; the standard has none
+}
+
 /// As a tree keeps them.
 struct alignas(16) FourKept {
   std::array<float, 4> lanes{};
@@ -47,13 +52,17 @@ inline Four dot(const FourVectors& a, const FourVectors& b) {
 inline Four dot(const FourVectors& a, const glm::vec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+[[gnu::always_inline]] inline Four length(const FourVectors& v) {
+  return stdx::sqrt(dot(v, v));
+}
 inline FourVectors abs(const FourVectors& a) {
   return {stdx::abs(a.x), stdx::abs(a.y), stdx::abs(a.z)};
 }
 
 /// The normal of the plane that touches a cone about the axis, with its apex at the origin, on the side of each vector;
 /// it points away from the cone.
-inline FourVectors touching_normal(const FourVectors& v, const glm::vec3& axis, float cosine, float sine) {
+[[gnu::always_inline]] inline FourVectors touching_normal(const FourVectors& v, const glm::vec3& axis, float cosine,
+                                                          float sine) {
   // Perpendicular to the axis to rounding, however near to it, by doing it twice.
   FourVectors across = v.minus(dot(v, axis), axis);
   across = across.minus(dot(across, axis), axis);

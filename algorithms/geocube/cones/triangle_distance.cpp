@@ -11,6 +11,7 @@ namespace pellucid::geocube {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRoundedUp = 1 + 1e-9;  // times a distance: above it, however that was rounded
 
 // The plane through the apex that touches the cone's wall on the side of w, by its normal away from the cone.
 glm::dvec3 wall_normal(const Cone& cone, const glm::dvec3& w) {
@@ -23,11 +24,14 @@ bool in_cone(const Cone& cone, const glm::dvec3& from_apex) {
   return glm::dot(from_apex, cone.axis) >= cone.cosine * glm::length(from_apex);
 }
 
-// The nearest point to the apex on the part of the segment that the (convex) cone holds.
-double distance_on_segment(const Cone& cone, const glm::dvec3& from, const glm::dvec3& to) {
+// The nearest point to the apex on the part of the segment that the (convex) cone holds; perhaps infinite when it is
+// not below `below`.
+double distance_on_segment(const Cone& cone, const glm::dvec3& from, const glm::dvec3& to, double below) {
   const glm::dvec3 d = to - from;
   const double length2 = squared(d);
   if (length2 <= 0) return in_cone(cone, from) ? glm::length(from) : kInfinity;
+  const double foot = -glm::dot(from, d) / length2;
+  if (squared(from + std::clamp(foot, 0.0, 1.0) * d) >= below * below * kRoundedUp) return kInfinity;
   // The cone's wall: (p·a)² = cos²·p² for p = from + t·d.
   const double fa = glm::dot(from, cone.axis), da = glm::dot(d, cone.axis), cos2 = cone.cosine * cone.cosine;
   const double a = da * da - cos2 * length2;
@@ -46,7 +50,6 @@ double distance_on_segment(const Cone& cone, const glm::dvec3& from, const glm::
   }
   stops[count++] = 1.0;
   if (count == 4 && stops[1] > stops[2]) std::swap(stops[1], stops[2]);
-  const double foot = -glm::dot(from, d) / length2;
   double best = kInfinity;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     if (!in_cone(cone, from + 0.5 * (stops[i] + stops[i + 1]) * d)) continue;
@@ -105,11 +108,13 @@ double distance_in_cone(const Cone& cone, const std::array<glm::dvec3, 3>& corne
       direction = length > 0 ? cone.cosine * cone.axis + cone.sine / length * across : cone.axis;
     }
     const double descent = glm::dot(direction, n);
+    // Nothing of the plane is nearer, whatever part of it the triangle is; but for rounding.
+    if (descent > 0 && height >= below * kRoundedUp * descent) return kInfinity;
     if (descent > 0 && inside_triangle(height / descent * direction, t, normal)) return height / descent;
   }
   double best = kInfinity;
   for (std::size_t i = 0; i < 3; ++i)
-    best = std::min(best, distance_on_segment(cone, t[i], t[(i + 1) % 3]));
+    best = std::min(best, distance_on_segment(cone, t[i], t[(i + 1) % 3], below));
   return best;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -52,10 +54,10 @@ struct Seen {
         height(dot(normal, from) + Four(node.offset)),
         thickness(node.thickness) {}
 
-  Four distance_to_box() const {
-    const auto beyond = [](const Four& w, const Four& h) { return stdx::max(stdx::abs(w) - h, Four(0)); };
-    const FourVectors d(beyond(from.x, half.x), beyond(from.y, half.y), beyond(from.z, half.z));
-    return stdx::sqrt(dot(d, d));
+  [[gnu::always_inline]] Four distance_to_box() const {
+    const Four zero = 0;
+    return length({stdx::max(stdx::abs(from.x) - half.x, zero), stdx::max(stdx::abs(from.y) - half.y, zero),
+                   stdx::max(stdx::abs(from.z) - half.z, zero)});
   }
 };
 
@@ -67,7 +69,7 @@ struct CoarseCone {
       : apex(c.apex), axis(c.axis), cosine(static_cast<float>(c.cosine)), sine(static_cast<float>(c.sine)) {}
 
   // True when the plane that touches the cone towards a box's middle parts the two.
-  FourFlags misses(const Seen& seen) const {
+  [[gnu::always_inline]] FourFlags misses(const Seen& seen) const {
     const FourVectors plane = touching_normal(seen.from, axis, cosine, sine);
     return dot(plane, seen.from) > dot(abs(plane), seen.half);
   }
@@ -76,7 +78,7 @@ struct CoarseCone {
   struct Span {
     Four begin, end;
   };
-  Span between_planes(const Seen& seen) const {
+  [[gnu::always_inline]] Span between_planes(const Seen& seen) const {
     constexpr float kRounding = 1e-5F;
     // The normal is turned so that the planes lie on its side; in the cone the share of a way that goes along it is
     // between `least` and `most`, by the angle to the axis.
@@ -98,17 +100,19 @@ struct CoarseCone {
   }
 
   // A lower bound of the distance from the apex to the points of each box in the cone; infinite when there are none.
-  // Where none of the four is below `of_interest` the bound may be a lower one, no less than that.
-  Four distance(const Seen& seen, float of_interest) const {
+  [[gnu::always_inline]] Four distance(const Seen& seen) const {
     const Four box = seen.distance_to_box();
     const Span span = between_planes(seen);
     Four result = stdx::max(box, span.begin);
-    stdx::where(box > span.end, result) = kFarAway;
-    if (stdx::all_of(result >= of_interest)) return result;
-    stdx::where(misses(seen), result) = kFarAway;
+    stdx::where(box > span.end || misses(seen), result) = kFarAway;
     return result;
   }
 };
+
+// A bound from here on, rounding included, tells that nothing is nearer.
+float far_bound(const Nearest& best) {
+  return static_cast<float>(best.distance * (1 + 2e-6));
+}
 
 }  // namespace
 
@@ -151,6 +155,7 @@ std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vec
       if (part.empty()) continue;
       enclose(nodes_[at], lane, part);
       const std::uint32_t child = part.size() == 1 ? part.front() | kTriangle : build(part, centroids);
+      (part.size() == 1 ? nodes_[at].triangles : nodes_[at].nodes) |= 1U << lane;
       nodes_[at].child[lane++] = child;
     }
   }
@@ -199,26 +204,63 @@ void TriangleTree::nearest_first(Nearest& best, Bound bound, Distance distance) 
   };
   std::array<Waiting, 64> stack;
   std::size_t depth = 0;
-  const auto may_better = [&](float least) { return static_cast<double>(least) * (1 - 1e-6) < best.distance; };
+  float within = far_bound(best);
   if (!nodes_.empty()) stack[depth++] = {0, 0};
   while (depth > 0) {
     const Waiting waiting = stack[--depth];
-    if (!may_better(waiting.least)) continue;
+    if (!(waiting.least < within)) continue;
     if ((waiting.child & kTriangle) != 0) {
       const std::uint32_t triangle = waiting.child & ~kTriangle;
       const double d = distance(triangle, best.distance);
-      if (d < best.distance) best = {d, triangle};
+      if (d >= best.distance) continue;
+      best = {d, triangle};
+      within = far_bound(best);
       continue;
     }
     const Node& node = nodes_[waiting.child];
     const Four least = bound(node);
     const std::size_t base = depth;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (node.child[k] == kNoTriangle || !may_better(least[k])) continue;
+    for (unsigned left = bits_of(least < within); left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      if (node.child[k] == kNoTriangle) continue;
       std::size_t i = depth++;
       for (; i > base && stack[i - 1].least < least[k]; --i)
         stack[i] = stack[i - 1];
       stack[i] = {least[k], node.child[k]};
+    }
+  }
+}
+
+// The same where little or nothing is nearer than the best so far. The nodes' order is of no matter then, and they are
+// taken by batches: no branch waits for a result, and the processor works at several nodes at a time.
+template <class Bound, class Distance>
+void TriangleTree::nearer(Nearest& best, Bound bound, Distance distance) const {
+  constexpr std::size_t kBatch = 16;
+  std::array<std::uint32_t, 1024> waiting;  // a batch leaves three times its number at most, once for each level
+  std::array<std::uint32_t, kBatch> nodes;
+  std::array<unsigned, kBatch> near;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const float within = far_bound(best);
+    const std::size_t batch = std::min(count, kBatch);
+    count -= batch;
+    assert(count + 4 * batch <= waiting.size());
+    for (std::size_t i = 0; i < batch; ++i) {
+      nodes[i] = waiting[count + i];
+      near[i] = bits_of(bound(nodes_[nodes[i]]) < within);
+    }
+    for (std::size_t i = 0; i < batch; ++i) {
+      const Node& node = nodes_[nodes[i]];
+      for (unsigned left = near[i] & node.triangles; left != 0; left &= left - 1) {
+        const std::uint32_t triangle = node.child[static_cast<std::size_t>(std::countr_zero(left))] & ~kTriangle;
+        const double d = distance(triangle, best.distance);
+        if (d < best.distance) best = {d, triangle};
+      }
+      for (std::size_t k = 0; k < 4; ++k) {
+        waiting[count] = node.child[k];
+        count += (near[i] & node.nodes) >> k & 1U;
+      }
     }
   }
 }
@@ -251,15 +293,14 @@ Nearest TriangleTree::nearest_in_cone(const Cone& cone, std::uint32_t own, std::
   }
   if (hint != kNoTriangle && hint != own) best = {distance_in_cone(cone, corners(hint)), hint};
   const CoarseCone coarse(cone);
-  nearest_first(
-      best,
-      [&](const Node& node) {
-        // Above what nearest_first() would still look at, rounding included.
-        return coarse.distance(Seen(node, coarse.apex), static_cast<float>(best.distance * (1 + 2e-6)));
-      },
-      [&](std::uint32_t triangle, double below) {
-        return triangle == own ? kUnbounded : distance_in_cone(cone, corners(triangle), below);
-      });
+  const auto bound = [&](const Node& node) { return coarse.distance(Seen(node, coarse.apex)); };
+  const auto distance = [&](std::uint32_t triangle, double below) {
+    return triangle == own ? kUnbounded : distance_in_cone(cone, corners(triangle), below);
+  };
+  if (best.distance < kUnbounded)
+    nearer(best, bound, distance);
+  else
+    nearest_first(best, bound, distance);
   return best;
 }
 

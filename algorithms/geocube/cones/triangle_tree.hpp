@@ -55,6 +55,7 @@ class TriangleTree {
     FourVectorsKept normal;        ///< unit, of the planes
     FourKept offset, thickness;    ///< the planes lie at offset ± thickness from the box's centre
     std::array<std::uint32_t, 4> child{kNoTriangle, kNoTriangle, kNoTriangle, kNoTriangle};  ///< kTriangle: a triangle
+    std::uint32_t triangles = 0, nodes = 0;  ///< which children are such, a bit for each
   };
   static constexpr std::uint32_t kTriangle = 1U << 31U;
 
@@ -63,6 +64,8 @@ class TriangleTree {
   bool crosses(std::uint32_t a, std::uint32_t b) const;
   template <class Bound, class Distance>
   void nearest_first(Nearest& best, Bound, Distance) const;
+  template <class Bound, class Distance>
+  void nearer(Nearest& best, Bound, Distance) const;
 
   std::vector<glm::dvec3> positions_;
   std::vector<glm::uvec3> triangles_;
