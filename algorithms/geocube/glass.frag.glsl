@@ -90,8 +90,9 @@ void main() {
     weight *= transmitted(absorption, found.path * object_scale);
 #endif
     n = found.normal;
-    // A normal that looks against the ray belongs to another part of the surface: the ray grazes it.
-    if (dot(h, n) <= 0.0) n = normalize(n - 1.0001 * dot(h, n) * h);
+    // A normal that looks against the ray belongs to another part of the surface. The one where it leaves is not known, and the ray
+    // goes on straight: taken to graze that part, it would be lost inside.
+    if (dot(h, n) <= 0.0) n = h;
     float inner = clamp(dot(h, n), 0.0, 1.0);
     float kept = fresnel_dielectric(inner, ior);
     if (k == 0) {

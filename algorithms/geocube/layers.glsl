@@ -141,6 +141,6 @@ Exit find_exit_in_layers(vec3 p, vec3 normal, vec3 h, int cube) {
   result.point = p + t * h;
   result.path = t;
   result.clear = 0.0;
-  result.normal = length(field.normal) > 0.0 ? normalize(field.normal) : h;
+  result.normal = leaving_normal(field.normal, h);
   return result;
 }

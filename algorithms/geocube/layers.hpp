@@ -169,7 +169,7 @@ inline Exit find_exit_in_layers(const LayerMaps& maps, const glm::vec3& p, const
   }
   exit.point = p + t * h;
   exit.length = t;
-  exit.normal = glm::length(field.normal) > 0.0F ? glm::normalize(field.normal) : h;
+  exit.normal = leaving_normal(field.normal, h);
   return exit;
 }
 

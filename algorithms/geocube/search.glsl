@@ -115,6 +115,9 @@ float corrected(vec3 p, vec3 h, int cube, vec3 v, CubeSample s, float t, float i
   return near ? clamp(next, inside, outside) : 0.5 * (inside + min(outside, t));
 }
 
+// The unit normal where the ray leaves, by the texels' mean.
+vec3 leaving_normal(vec3 mean, vec3 h) { return normalize(mean + 4.0 * max(0.95 - length(mean), 0.0) * h); }
+
 // `start`: how far the way is known to be clear.
 Exit find_exit(vec3 p, vec3 h, int cube, float start) {
   float t = start;
@@ -142,7 +145,7 @@ Exit find_exit(vec3 p, vec3 h, int cube, float start) {
   result.point = found && refine > 0 ? p + t * h : cube_spheres[cube].xyz + s.bounds.x * v;
   result.path = t;
   result.cube = cube;
-  result.normal = normalize(s.plane.xyz);
+  result.normal = leaving_normal(s.plane.xyz, h);
   result.clear = s.bounds.w;
   return result;
 }

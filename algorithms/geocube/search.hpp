@@ -211,6 +211,13 @@ inline float corrected(const glm::vec3& s, const glm::vec3& normal, const glm::v
   return near ? std::clamp(next, inside, outside) : 0.5F * (inside + std::min(outside, t));
 }
 
+/// The unit normal where the ray leaves, by the mean of the texels' normals. That is short where they belong to two
+/// faces of an edge; it is not known then which of the two the ray meets, and the more they disagree the straighter it
+/// goes on: the mean alone might look against the ray, or make it graze, and the light would be lost inside.
+inline glm::vec3 leaving_normal(const glm::vec3& mean, const glm::vec3& h) {
+  return glm::normalize(mean + 4.0F * std::max(0.95F - glm::length(mean), 0.0F) * h);
+}
+
 /// Follows the ray p + t·h (h unit) from a surface point with outward unit normal `normal` through the inside, starting
 /// in `cube`.
 template <class Maps>
@@ -232,7 +239,7 @@ Exit find_exit(const Maps& maps, const glm::vec3& p, const glm::vec3& normal, co
   }
   Exit exit;
   exit.point = m.found && options.refine > 0 ? p + t * h : surface();
-  exit.normal = glm::normalize(glm::vec3(sample.plane));
+  exit.normal = leaving_normal(glm::vec3(sample.plane), h);
   exit.length = t;
   exit.steps = m.steps;
   exit.cube = m.cube;
