@@ -107,7 +107,13 @@ void TranslucentPath::interact(Walker& walker, const Hit& hit, const SurfacePoin
     roulette(walker, random);
     return;
   }
-  if (!point.front && !walker.inside.contains(hit.index)) tally.lost_weight += worst(walker.light());
+  if (point.front == walker.inside.contains(hit.index)) {
+    tally.lost_weight += worst(walker.light());
+    // Inside and met from outside: rounding has it on the wrong side of a sharp edge, whose faces would refract it to
+    // each other for ever.
+    walker.ended = point.front;
+    if (walker.ended) return;
+  }
   const double ior = static_cast<double>(material.ior);
   const Split split = split_at(arriving, point.normal, point.face, point.front ? 1.0 / ior : ior);
   const double reflected = split.refracted ? split.reflected_share : 1.0;

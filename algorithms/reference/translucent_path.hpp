@@ -76,12 +76,16 @@ Hit TranslucentPath::trace(const TreeRay& root, const TreeLimits& limits, Random
       const double unabsorbed = at_root ? root.unabsorbed_m : 0.0;
       Walker* other = at_root ? &walkers[1] : nullptr;
       at_root = false;
+      if (hit.instance == nullptr && !walker.inside.empty()) {
+        // Out of a solid without having met it: through a hole, or past a sharp edge by rounding. No medium is there.
+        tally.lost_weight += worst(walker.light());
+        walker.inside = {};
+      }
       if (const Material* inside = medium(walker)) {
         if (unabsorbed > 0.0) walker.start += unabsorbed * walker.direction;
         if (scatter(walker, *inside, hit.distance - unabsorbed, random)) continue;
       }
       if (hit.instance == nullptr) {
-        if (!walker.inside.empty()) tally.lost_weight += worst(walker.light());
         miss(walker.direction, walker.light());
         break;
       }

@@ -79,6 +79,18 @@ TEST(Translucency, ABallThatAbsorbsNothingVanishesInAFurnace) {
   }
 }
 
+// A ray that meets an edge of 60° to the last bit: rounding decides which of the faces it meets, and on which side. It
+// was refracted between them until too many solids seemed to lie inside one another.
+TEST(Translucency, APathEndsWhereItMeetsASharpEdge) {
+  Scene scene;
+  add(scene, make_cylinder(1, 1.6F, 3), cloudy(1.001F, glm::vec3(1), 0.95F), at({0, -0.8F, 0}));
+  set_furnace(scene);
+  for (const float distance : {3.1F, 3.2F, 3.3F}) {
+    const SurfaceLayer layer = traced(scene, looking({distance, 0, 0}, {0, 0, 0}, 1), 1);
+    EXPECT_LT(layer.statistics.rays, 10U) << distance;
+  }
+}
+
 TEST(Translucency, WithoutScatteringWalksAreTheTree) {
   // A second ball, out of sight, scatters, so that all is walked.
   Scene scene;
