@@ -1,8 +1,9 @@
-// pellucid sweep run, killed: with the real workers, scenes and metrics.
+// pellucid sweep run and pellucid reference, killed: with the real workers, scenes and metrics.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <thread>
@@ -98,6 +99,75 @@ hulls = [1, 2, 4, 8, 16]
     EXPECT_EQ(json::diff(deterministic(rows[i]), deterministic(expected[i])), json::array()) << rows[i].at("repeat");
   for (const json& row : before)
     EXPECT_NE(std::find(rows.begin(), rows.end(), row), rows.end()) << "a row was measured again";
+}
+
+TEST(KilledReferenceCommand, GoesOnToThePictureOfOneThatWasNot) {
+  const TemporaryFolder folder;
+  const std::string scene = write_file(folder / "ball.toml", R"(title = "A cloudy ball"
+description = "It scatters."
+[views.front]
+eye = [0, 0.2, 3.4]
+target = [0, 0, 0]
+fov_y_deg = 40
+near_m = 0.1
+far_m = 100
+[materials.medium]
+kind = "dielectric"
+ior = 1.3
+scattering = 8
+anisotropy = 0.5
+[meshes.ball]
+shape = "sphere"
+radius = 1
+segments = 16
+[instances.ball]
+mesh = "ball"
+material = "medium"
+[environment]
+zenith = [0.2, 0.4, 1.0]
+horizon = [1.0, 1.0, 1.0]
+ground = [0.2, 0.1, 0.0]
+)")
+                                .string();
+  const std::filesystem::path cache = folder / "cache";
+  const Setting keeps{.environment = {{"PELLUCID_CACHE", cache.string()}}};
+  const auto kept = [&] {
+    return std::filesystem::exists(cache / "paths") && !std::filesystem::is_empty(cache / "paths");
+  };
+  int samples = 24;
+  const auto command = [&](const std::string& name) {
+    return std::vector<std::string>{"reference", scene,       "--size",
+                                    "96x96",     "--samples", std::to_string(samples),
+                                    "--json",    "-o",        (folder / name).string()};
+  };
+
+  // Something is kept after two seconds for the first time; the faster the machine, the more samples that takes.
+  bool stopped = false;
+  while (!stopped && samples < 10'000) {
+    samples *= 4;
+    std::filesystem::remove_all(cache);
+    std::filesystem::remove(folder / "killed.exr");
+    auto killed = command("killed.exr");
+    killed.insert(killed.begin(), PELLUCID_PROGRAM);
+    Background running(killed, keeps);
+    while (!kept() && running.running())
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    stopped = running.running();
+    if (stopped) running.stop(SIGKILL);
+  }
+  ASSERT_TRUE(stopped) << "it was over before it could be killed";
+  EXPECT_FALSE(std::filesystem::exists(folder / "killed.exr"));
+
+  const Outcome resumed = pellucid(command("killed.exr"), keeps);
+  const Outcome whole = pellucid(command("whole.exr"), {.environment = {{"PELLUCID_CACHE", "off"}}});
+  ASSERT_TRUE(succeeded(resumed));
+  ASSERT_TRUE(succeeded(whole));
+  EXPECT_LT(resumed.wall_s, whole.wall_s) << "it began anew";
+  EXPECT_EQ(json::parse(resumed.out).at("standard_error_mean"), json::parse(whole.out).at("standard_error_mean"));
+  const Outcome compared =
+      pellucid({"compare", (folder / "whole.exr").string(), (folder / "killed.exr").string(), "-m", "rmse", "--json"});
+  ASSERT_TRUE(succeeded(compared));
+  EXPECT_EQ(json::parse(compared.out).at("rmse"), 0.0);
 }
 
 }  // namespace
