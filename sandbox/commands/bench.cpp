@@ -219,6 +219,13 @@ int bench(const BenchArguments& options) {
   const AgainstVtk vtk = volume ? against_vtk(info, options, request, context)
                                 : AgainstVtk{std::nullopt, "it draws volumes, the technique does not"};
 
+  // Without the passes that both share; one view ray each, where the technique casts some.
+  const double own_ms = result.method.median_ms - result.opaque.median_ms;
+  const std::optional<double> blends_per_s =
+      result.own && own_ms > 0
+          ? std::optional(result.blends_per_pixel * static_cast<double>(size.width) * size.height * 1e3 / own_ms)
+          : std::nullopt;
+
   if (options.json) {
     ordered_json out = recipe;
     out["frames"] = result.frames;
@@ -231,6 +238,7 @@ int bench(const BenchArguments& options) {
     out["blends_per_pixel"] = result.blends_per_pixel;
     out["fetches_per_blend"] = result.fetches_per_blend;
     out["fetches_per_pixel"] = result.fetches_per_pixel;
+    out["blends_per_second_without_opaque"] = blends_per_s ? ordered_json(*blends_per_s) : ordered_json(nullptr);
     out["reference"] = reference_json(result.reference);
     out["against_vtk"] = vtk_json(vtk);
     out["device"] = context.device().renderer;
@@ -256,6 +264,8 @@ int bench(const BenchArguments& options) {
   fmt::print("  {:<34} {:9.3f}\n", "blends per pixel", result.blends_per_pixel);
   fmt::print("  {:<34} {:9.3f}     {:.4g} per blend\n", "texture fetches per pixel", result.fetches_per_pixel,
              result.fetches_per_blend);
+  if (blends_per_s)
+    fmt::print("  {:<34} {:9.3f} M   without what both share\n", "blends per second", *blends_per_s / 1e6);
   if (result.reference) print_reference(*result.reference);
   if (volume) print_vtk(vtk);
   fmt::print("on {}, clock {}\n", context.device().renderer, result.clock);
