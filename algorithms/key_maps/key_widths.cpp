@@ -8,23 +8,24 @@
 namespace pellucid::scattering {
 namespace {
 
-// How far lines between samples `factor` apart miss a Gaussian of this width, at middles of fine texels.
-double missed(int factor, double width) {
+// True if lines between samples `factor` apart miss a Gaussian of this width by more than `omega`, at middles of fine
+// texels.
+bool misses(int factor, double width, double omega) {
   constexpr int kPhases = 32;
   const auto gaussian = [&](double x) { return std::exp(-0.5 * x * x / (width * width)); };
-  double most = 0;
   for (int phase = 0; phase < kPhases; ++phase) {
-    // The peak lies at 0, a coarse middle at `left`; farther than three widths away nothing is missed.
+    // The peak lies at 0, a coarse middle at `left`. The Gaussian bends most there; farther than its width away less is
+    // missed.
     const double left = -factor * static_cast<double>(phase) / kPhases;
-    for (double at = left - factor * std::ceil(3 * width / factor); at < 3 * width; at += factor) {
+    for (double at = left - factor * std::ceil(width / factor); at < width; at += factor) {
       const double a = gaussian(at), b = gaussian(at + factor);
       for (int i = 0; i < factor; ++i) {
         const double t = (i + 0.5) / factor;
-        most = std::max(most, std::abs(a + t * (b - a) - gaussian(at + t * factor)));
+        if (std::abs(a + t * (b - a) - gaussian(at + t * factor)) > omega) return true;
       }
     }
   }
-  return most;
+  return false;
 }
 
 }  // namespace
@@ -32,11 +33,11 @@ double missed(int factor, double width) {
 double least_width(int factor, double omega) {
   assert(factor >= 2 && omega > 0 && omega < 1);
   double low = 0.05 * factor, high = low;
-  while (missed(factor, high) > omega)
+  while (misses(factor, high, omega))
     high *= 2;
   for (int i = 0; i < 30; ++i) {
     const double middle = 0.5 * (low + high);
-    (missed(factor, middle) > omega ? low : high) = middle;
+    (misses(factor, middle, omega) ? low : high) = middle;
   }
   return high;
 }
