@@ -111,10 +111,11 @@ Background::Background(const std::vector<std::string>& command, const Setting& s
     : pid_(start(command, setting, -1, -1)) {}
 
 Background::~Background() {
-  if (pid_ > 0) stop(SIGKILL);
+  stop(SIGKILL);
 }
 
 void Background::stop(int signal) {
+  if (pid_ <= 0) return;  // it has ended; -1 would name every process
   ::kill(-pid_, signal);
   while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }

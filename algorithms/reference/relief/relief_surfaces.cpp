@@ -14,7 +14,6 @@ namespace pellucid {
 namespace {
 
 constexpr double kAirSteps = 400;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Value>
 auto interpolate(const std::vector<Value>& values, const Hit& hit) {
@@ -96,7 +95,8 @@ std::optional<ReliefSurfaces::Seen> ReliefSurfaces::seen(const Hit& hit, const S
         bend_through(*air, straight.ray(-way * v, v), 2.0 * way / kAirSteps, objects_ ? std::function(stops) : nullptr);
     const glm::dvec3 onward = straight.to_world(bent.direction);
     if (bent.end == BentRay::End::leaves)
-      object = object_on(straight.position + straight.to_world(bent.position), onward, kInfinity, rays);
+      object = object_on(straight.position + straight.to_world(bent.position), onward,
+                         std::numeric_limits<double>::infinity(), rays);
     if (object) return Seen{object->radiance, 0.0};
     if (bent.end == BentRay::End::leaves) return Seen{glm::dvec3(scene_->environment.radiance(glm::vec3(onward))), 0.0};
     place.position += straight.to_world(bent.position);

@@ -12,7 +12,6 @@ namespace pellucid {
 namespace {
 
 constexpr int kMostBoundaries = 64;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A normal that looks away from the ray, as interpolated ones may, is turned so far that the ray grazes.
 glm::dvec3 facing(const glm::dvec3& n, const glm::dvec3& v) {
@@ -194,7 +193,7 @@ glm::dvec3 ReliefTracer::radiance(const ReliefPlace& place, const glm::dvec3& v,
     sum += (1.0 - reflected_share) * transmitted(glm::dvec3(relief_->absorption), inside) * far.radiance;
   }
   const glm::dvec3 mirrored = reflected(v, n);
-  sum += reflected_share * seen(mirrored, kInfinity).radiance;
+  sum += reflected_share * seen(mirrored, std::numeric_limits<double>::infinity()).radiance;
 
   for (std::size_t i = 0; i < light_->light_count(); ++i) {
     const Incidence in = light_->incidence(i, place.position + place.to_world(p));

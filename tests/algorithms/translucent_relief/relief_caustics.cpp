@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kIndex = 1.33, kAlbedo = 0.8, kAmbient = 0.2;
+constexpr double kIndex = 1.33, kGroundAlbedo = 0.8, kAmbient = 0.2;
 constexpr int kWidth = 96, kHeight = 72;
 
 Settings gathering(const char* caustics = "true", const char* resolution = "128") {
@@ -36,7 +36,7 @@ Relief level_layers() {
   Relief relief;
   relief.cut = false;
   relief.solid = flat_layer(-0.25F, -0.5F);
-  relief.solid.albedo = glm::vec3(static_cast<float>(kAlbedo));
+  relief.solid.albedo = glm::vec3(static_cast<float>(kGroundAlbedo));
   relief.translucent = flat_layer(-0.05F, -0.5F);
   relief.absorption = {1.0F, 2.0F, 5.0F};
   return relief;
@@ -59,7 +59,7 @@ double worst_over(const Scene& scene, const Image& image, double solid_m,
       const glm::dvec3 inside = *refracted(v, n, 1 / kIndex);
       const double way = (p.y - solid_m) / -inside.y;
       for (int c = 0; c < 3; ++c) {
-        const double seen = std::exp(-static_cast<double>(scene.reliefs[0].absorption[c]) * way) * kAlbedo *
+        const double seen = std::exp(-static_cast<double>(scene.reliefs[0].absorption[c]) * way) * kGroundAlbedo *
                             (kAmbient + irradiance(p + way * inside, c) / std::numbers::pi);
         const double expected =
             (1 - reflected_share) * seen + reflected_share * static_cast<double>(scene.environment.zenith[c]);
@@ -133,7 +133,7 @@ TEST(ReliefCaustics, CosineWavesBeforeTheirFocus) {
     Relief relief = level_layers();
     relief.absorption = glm::vec3(0.0F);
     relief.solid = flat_layer(static_cast<float>(kSolid), -0.5F);
-    relief.solid.albedo = glm::vec3(static_cast<float>(kAlbedo));
+    relief.solid.albedo = glm::vec3(static_cast<float>(kGroundAlbedo));
     Image heights(1024, 1, 1);  // slopes are linear between texels: gains are as far off as those
     for (int i = 0; i < 1024; ++i)
       heights.pixels[static_cast<std::size_t>(i)] =
@@ -185,7 +185,7 @@ TEST(ReliefCaustics, AroundACylinder) {
     Relief relief = level_layers();
     relief.absorption = glm::vec3(0.0F);
     relief.solid = flat_layer(-0.006F, -0.02F);
-    relief.solid.albedo = glm::vec3(static_cast<float>(kAlbedo));
+    relief.solid.albedo = glm::vec3(static_cast<float>(kGroundAlbedo));
     relief.translucent = flat_layer(-0.001F, -0.02F);
     Scene scene = relief_scene(relief);
     scene.meshes[0] = make_cylinder(0.4F, 0.6F, 96);
