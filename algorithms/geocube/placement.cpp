@@ -34,7 +34,7 @@ class Chooser {
     const auto wanted = static_cast<std::size_t>(options_.candidates);
     add_between_walls(order_, wanted / 2);
     for (std::size_t tries = 0; candidates_.size() < wanted && tries < 100 * wanted; ++tries) {
-      const glm::dvec3 at(random_.next(), random_.next(), random_.next());
+      const glm::dvec3 at = within_box();
       add_candidate(solid_.low() + at * (solid_.high() - solid_.low()));
     }
   }
@@ -60,6 +60,17 @@ class Chooser {
   }
 
  private:
+  // In [0, 1] and in [-1, 1] along each axis. As arguments of a call the numbers would be drawn in an order that each
+  // compiler chooses, and cubes would stand elsewhere.
+  glm::dvec3 within_box() {
+    const double z = random_.next(), y = random_.next(), x = random_.next();
+    return {x, y, z};
+  }
+  glm::dvec3 any_step() {
+    const double z = random_.range(-1, 1), y = random_.range(-1, 1), x = random_.range(-1, 1);
+    return {x, y, z};
+  }
+
   // The candidates that see most of a few of the triangles: those worth asking about all of them. The triangles are in
   // random order, so that the first ones are a fair sample, and one in twenty candidates leaves room for its error.
   std::vector<glm::dvec3> most_promising(const std::vector<std::uint32_t>& open) const {
@@ -82,7 +93,7 @@ class Chooser {
     for (std::size_t i = 0; i < count && !triangles.empty(); ++i) {
       const std::uint32_t t = triangles[i * triangles.size() / count];
       const glm::dvec3 normal = solid_.facet_normal(t);
-      const glm::dvec3 tilt(random_.range(-1, 1), random_.range(-1, 1), random_.range(-1, 1));
+      const glm::dvec3 tilt = any_step();
       const glm::dvec3 inwards = glm::normalize((i % 2 == 0 ? 0.0 : 0.5) * tilt - normal);
       const glm::dvec3 from = solid_.centroid(t) - nudge * normal;
       const auto hit = solid_.first_hit(from, inwards);
@@ -154,7 +165,7 @@ class Chooser {
     for (double reach = 0.08 * solid_.diagonal(); reach > 0.004 * solid_.diagonal(); reach *= 0.5) {
       std::vector<glm::dvec3> moves;
       for (std::size_t m = 0; m < kMoves; ++m) {
-        const glm::dvec3 step(random_.range(-1, 1), random_.range(-1, 1), random_.range(-1, 1));
+        const glm::dvec3 step = any_step();
         if (usable(centers_[i] + reach * step)) moves.push_back(centers_[i] + reach * step);
       }
       const std::vector<double> gains = gains_of(moves, open, alone);

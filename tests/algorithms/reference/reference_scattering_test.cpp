@@ -226,7 +226,10 @@ TEST(ReferenceScattering, TheStatedErrorBoundsTheTrueOneWithEverythingAtOnce) {
   scene.volume = kinked_volume();
   scene.ambient = {0.2F, 0.1F, 0.1F};
   Random random(12);
-  const auto within = [&] { return glm::vec3(random.range(-2, 6), random.range(-1, 3), random.range(-2, 2)); };
+  const auto within = [&] {  // one after the other: a call's arguments are drawn in an order that the compiler chooses
+    const float z = random.range(-2, 2), y = random.range(-1, 3), x = random.range(-2, 6);
+    return glm::vec3(x, y, z);
+  };
   place(scene, make_box({0.3F, 0.4F, 0.2F}), glm::mat4(1.0F));
   scene.instances.clear();
   for (int i = 0; i < 20; ++i)
