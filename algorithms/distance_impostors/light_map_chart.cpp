@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <utility>
+
+#include "algorithms/scene/meshes/connected_parts.hpp"
 
 namespace pellucid::distance_impostors {
 namespace {
@@ -47,29 +49,6 @@ bool in_unit_square(const std::vector<glm::vec2>& places) {
   });
 }
 
-// Parts that share no vertex; the number of each vertex's part.
-std::vector<int> find_parts(const Mesh& mesh, int& count) {
-  std::vector<unsigned> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](unsigned v) {
-    while (parent[v] != v)
-      v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const glm::uvec3& t : mesh.triangles) {
-    parent[root(t.y)] = root(t.x);
-    parent[root(t.z)] = root(t.x);
-  }
-  std::vector<int> number(mesh.positions.size(), -1), parts(mesh.positions.size());
-  count = 0;
-  for (unsigned v = 0; v < parent.size(); ++v) {
-    int& n = number[root(v)];
-    if (n < 0) n = count++;
-    parts[v] = n;
-  }
-  return parts;
-}
-
 }  // namespace
 
 std::optional<LightMapChart> make_chart(const Mesh& mesh, int texels, int margin) {
@@ -77,7 +56,9 @@ std::optional<LightMapChart> make_chart(const Mesh& mesh, int texels, int margin
   LightMapChart chart{mesh.uvs, std::vector<int>(mesh.positions.size(), 0), 1};
   if (in_unit_square(chart.places) && apart(mesh, chart.places)) return chart;
 
-  chart.parts = find_parts(mesh, chart.part_count);
+  ConnectedParts connected = connected_parts(mesh);
+  chart.parts = std::move(connected.of_vertex);
+  chart.part_count = connected.count;
   if (chart.part_count > kMaxParts) return std::nullopt;
   const auto parts = static_cast<std::size_t>(chart.part_count);
   std::vector<glm::vec2> low(parts, glm::vec2(1e30F)), high(parts, glm::vec2(-1e30F));

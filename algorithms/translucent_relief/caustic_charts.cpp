@@ -4,12 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "algorithms/scene/meshes/connected_parts.hpp"
 #include "algorithms/scene/meshes/tangents.hpp"
 #include "gl/error.hpp"
 
@@ -26,25 +25,6 @@ struct Covered {
   glm::vec3 weights;
   bool inside() const { return std::min({weights.x, weights.y, weights.z}) > kInside; }
 };
-
-// Which triangles hang together, by the least triangle of each piece.
-std::vector<std::uint32_t> pieces_of(const Mesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i)
-      i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const glm::uvec3& t : mesh.triangles) {
-    parent[root(t.y)] = root(t.x);
-    parent[root(t.z)] = root(t.x);
-  }
-  std::vector<std::uint32_t> pieces;
-  for (const glm::uvec3& t : mesh.triangles)
-    pieces.push_back(root(t.x));
-  return pieces;
-}
 
 std::vector<Covered> covered_by(const Mesh& mesh, const glm::uvec3& t, int side) {
   const float cells = static_cast<float>(side - 1);
@@ -124,14 +104,14 @@ CausticCharts caustic_charts(const Mesh& mesh, int side, const std::string& what
     charts.over_u = tangents.u[0];
     charts.over_v = tangents.v[0];
   }
-  std::map<std::uint32_t, std::vector<std::size_t>> pieces;
-  const std::vector<std::uint32_t> piece_of = pieces_of(mesh);
-  for (std::size_t i = 0; i < piece_of.size(); ++i)
-    pieces[piece_of[i]].push_back(i);
+  const ConnectedParts parts = connected_parts(mesh);
+  std::vector<std::vector<std::size_t>> pieces(static_cast<std::size_t>(parts.count));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    pieces[static_cast<std::size_t>(parts.of_vertex[mesh.triangles[i].x])].push_back(i);
 
   const std::size_t nodes = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   std::vector<std::vector<bool>> taken;  // by layer, nodes inside a triangle
-  for (const auto& [first, triangles] : pieces) {
+  for (const std::vector<std::size_t>& triangles : pieces) {
     std::vector<std::pair<std::size_t, Covered>> all;
     std::vector<bool> own(nodes, false);
     for (const std::size_t i : triangles) {
