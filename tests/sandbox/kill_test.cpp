@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/cloudy_ball.hpp"
 #include "tests/sandbox/program.hpp"
 
 namespace pellucid::test {
@@ -103,32 +104,7 @@ hulls = [1, 2, 4, 8, 16]
 
 TEST(KilledReferenceCommand, GoesOnToThePictureOfOneThatWasNot) {
   const TemporaryFolder folder;
-  const std::string scene = write_file(folder / "ball.toml", R"(title = "A cloudy ball"
-description = "It scatters."
-[views.front]
-eye = [0, 0.2, 3.4]
-target = [0, 0, 0]
-fov_y_deg = 40
-near_m = 0.1
-far_m = 100
-[materials.medium]
-kind = "dielectric"
-ior = 1.3
-scattering = 8
-anisotropy = 0.5
-[meshes.ball]
-shape = "sphere"
-radius = 1
-segments = 16
-[instances.ball]
-mesh = "ball"
-material = "medium"
-[environment]
-zenith = [0.2, 0.4, 1.0]
-horizon = [1.0, 1.0, 1.0]
-ground = [0.2, 0.1, 0.0]
-)")
-                                .string();
+  const std::string scene = write_file(folder / "ball.toml", cloudy_ball(8, 0.5)).string();
   const std::filesystem::path cache = folder / "cache";
   const Setting keeps{.environment = {{"PELLUCID_CACHE", cache.string()}}};
   const auto kept = [&] {

@@ -14,43 +14,18 @@
 #include "algorithms/scene/scene.hpp"
 #include "tests/algorithms/reference/optical_scenes.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
+#include "tests/cloudy_ball.hpp"
 #include "tests/gl/gl_fixture.hpp"
 
 namespace pellucid::test {
 namespace {
-
-constexpr const char* kCloudyBall = R"(title = "A cloudy ball"
-description = "It scatters."
-[views.front]
-eye = [0, 0.2, 3.4]
-target = [0, 0, 0]
-fov_y_deg = 40
-near_m = 0.1
-far_m = 100
-[materials.medium]
-kind = "dielectric"
-ior = 1.3
-scattering = 1
-anisotropy = 0.9
-[meshes.ball]
-shape = "sphere"
-radius = 1
-segments = 16
-[instances.ball]
-mesh = "ball"
-material = "medium"
-[environment]
-zenith = [0.2, 0.4, 1.0]
-horizon = [1.0, 1.0, 1.0]
-ground = [0.2, 0.1, 0.0]
-)";
 
 // 48 samples are three times as many as are traced between two looks at the clock.
 constexpr int kSamples = 48;
 
 class PartialPictureTest : public FolderTest {
  protected:
-  PartialPictureTest() : scene_(load_scene(write("ball.toml", kCloudyBall))) {}
+  PartialPictureTest() : scene_(load_scene(write("ball.toml", cloudy_ball(1, 0.9)))) {}
   SurfaceLayer traced(const std::function<void(double)>& progress, std::uint32_t seed = 1) const {
     SurfaceOptions options;
     options.seed = seed;
