@@ -31,6 +31,10 @@ Image flipped(const std::vector<float>& texels, int width, int height, int strid
     const float* in =
         texels.data() + static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width * stride);
     float* out = image.at(0, y);
+    if (stride == channels) {
+      std::copy_n(in, width * channels, out);
+      continue;
+    }
     for (int x = 0; x < width; ++x, in += stride, out += channels)
       std::copy_n(in, channels, out);
   }

@@ -98,20 +98,15 @@ bool read_as_halves(Format format) {
   return format == Format::rg16f || format == Format::rgba16f;
 }
 
-// Half to single precision (IEEE 754), exact for every value; NaNs keep their payload.
+// Half to single precision (IEEE 754), exact for every value; NaNs keep their payload. Without branches, so that the
+// compiler takes several at once.
 float single_from_half(std::uint16_t half) {
-  constexpr std::uint32_t kLeastNormal = 113U << 23;  // 2^-14, half's least normal number
   const std::uint32_t sign = static_cast<std::uint32_t>(half & 0x8000U) << 16;
   const std::uint32_t rest = static_cast<std::uint32_t>(half & 0x7fffU) << 13;
-  const std::uint32_t exponent = rest & (0x1fU << 23);
-  std::uint32_t out = rest + (112U << 23);
-  if (exponent == 0x1fU << 23) {
-    out += 112U << 23;  // infinities and NaNs
-  } else if (exponent == 0) {
-    // A subnormal number: its mantissa behind a leading one, less that one.
-    out = std::bit_cast<std::uint32_t>(std::bit_cast<float>(rest + kLeastNormal) - std::bit_cast<float>(kLeastNormal));
-  }
-  return std::bit_cast<float>(out | sign);
+  // Exponents differ by 127 - 15 = 112; the product makes a subnormal half a normal number.
+  const auto finite = std::bit_cast<std::uint32_t>(std::bit_cast<float>(rest) * 0x1p112F);
+  const std::uint32_t endless = rest >= 0x1fU << 23 ? 0xffU << 23 : 0U;  // infinities and NaNs
+  return std::bit_cast<float>(finite | endless | sign);
 }
 
 // GL would report a texture that is too large as GL_INVALID_VALUE; say what is too large, and how much is allowed.

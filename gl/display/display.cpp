@@ -15,6 +15,7 @@
 
 #include "gl/display/display_config.hpp"
 #include "gl/display/display_gpu.hpp"
+#include "gl/display/tabulated_curves.hpp"
 #include "gl/error.hpp"
 
 namespace OCIO = OCIO_NAMESPACE;
@@ -176,7 +177,7 @@ struct DisplayTransform::State {
   std::optional<DisplayFunction> gpu;  // made by the first drawing: writing a PNG needs no GL
 
   DisplayFunction& function() {
-    if (!gpu) gpu.emplace(processor->getOptimizedGPUProcessor(kOptimization));
+    if (!gpu) gpu.emplace(with_tabulated_curves(named.config, processor)->getOptimizedGPUProcessor(kOptimization));
     return *gpu;
   }
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +13,10 @@
 #include <fmt/format.h>
 
 #include "gl/display/display_config.hpp"
+#include "gl/display/tabulated_curves.hpp"
 #include "tests/gl/gl_fixture.hpp"
+
+namespace OCIO = OCIO_NAMESPACE;
 
 namespace pellucid::gl::test {
 namespace {
@@ -98,6 +102,59 @@ TEST_F(DisplayTest, CpuAndGpuAgreeInEveryView) {
     expect_cpu_and_gpu_agree(transform);
     expect_cpu_and_gpu_agree(transform, -1.5F);
   }
+}
+
+/// A processor from the display config's working space, and its shader.
+struct Processed {
+  OCIO::ConstConfigRcPtr config;
+  OCIO::ConstProcessorRcPtr processor;
+  explicit Processed(const OCIO::ConstTransformRcPtr& transform) {
+    std::istringstream text{std::string(kDisplayConfig)};
+    config = OCIO::Config::CreateFromStream(text);
+    processor = config->getProcessor(transform);
+  }
+};
+
+std::string shader_of(const OCIO::ConstProcessorRcPtr& processor) {
+  OCIO::GpuShaderDescRcPtr shader = OCIO::GpuShaderDesc::CreateShaderDesc();
+  shader->setLanguage(OCIO::GPU_LANGUAGE_GLSL_4_0);
+  processor->getDefaultGPUProcessor()->extractGpuShaderInfo(shader);
+  return shader->getShaderText();
+}
+
+TEST_F(DisplayTest, ToneCurvesAreDrawnFromOneTable) {
+  const OCIO::DisplayViewTransformRcPtr film = OCIO::DisplayViewTransform::Create();
+  film->setSrc("lin_rec709");
+  film->setDisplay("sRGB");
+  film->setView("Film");
+  const Processed aces(film);
+  const OCIO::ConstProcessorRcPtr tabulated = with_tabulated_curves(aces.config, aces.processor);
+  EXPECT_NE(shader_of(aces.processor).find("BSpline"), std::string::npos);
+  EXPECT_EQ(shader_of(tabulated).find("BSpline"), std::string::npos);
+  // A hundredth of the step between two codes of 8 bits.
+  std::vector<float> exact = hdr_pixels();
+  const auto apply = [](const OCIO::ConstProcessorRcPtr& processor, std::vector<float>& pixels) {
+    OCIO::PackedImageDesc image(pixels.data(), kSize, kSize, 4);
+    processor->getOptimizedCPUProcessor(OCIO::OPTIMIZATION_LOSSLESS)->apply(image);
+  };
+  std::vector<float> table = exact;
+  apply(aces.processor, exact);
+  apply(tabulated, table);
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    EXPECT_NEAR(table[i], exact[i], 4e-5F);
+}
+
+TEST_F(DisplayTest, ACurveThatGoesOnBeyondItsEndsIsNoTable) {
+  const OCIO::GradingRGBCurveTransformRcPtr rising = OCIO::GradingRGBCurveTransform::Create(OCIO::GRADING_LOG);
+  const OCIO::GradingRGBCurveRcPtr curves = OCIO::GradingRGBCurve::Create(OCIO::GRADING_LOG);
+  const OCIO::GradingBSplineCurveRcPtr master = curves->getCurve(OCIO::RGB_MASTER);
+  master->setNumControlPoints(3);
+  master->getControlPoint(0) = {-1.0F, -2.0F};
+  master->getControlPoint(1) = {0.0F, 0.0F};
+  master->getControlPoint(2) = {1.0F, 1.0F};
+  rising->setValue(curves);
+  const Processed graded(rising);
+  EXPECT_EQ(with_tabulated_curves(graded.config, graded.processor), graded.processor);
 }
 
 float srgb_curve(float linear) {
