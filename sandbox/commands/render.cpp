@@ -22,10 +22,10 @@
 #include "gl/context.hpp"
 #include "sandbox/commands/commands.hpp"
 #include "sandbox/commands/frame_options.hpp"
-#include "sandbox/commands/frame_range.hpp"
 #include "sandbox/commands/scene_facts.hpp"
 #include "sandbox/file_provenance.hpp"
 #include "sandbox/reproduce/native_maps.hpp"
+#include "sandbox/viewer/camera/frame_range.hpp"
 #include "sandbox/viewer/out/tev_client.hpp"
 
 namespace pellucid::sandbox {

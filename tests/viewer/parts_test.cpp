@@ -13,8 +13,8 @@
 
 #include "algorithms/scene/view_text.hpp"
 #include "gl/error.hpp"
-#include "sandbox/commands/frame_range.hpp"
 #include "sandbox/viewer/camera/drag_parameter.hpp"
+#include "sandbox/viewer/camera/frame_range.hpp"
 #include "sandbox/viewer/camera/orbit.hpp"
 #include "sandbox/viewer/camera/path.hpp"
 #include "sandbox/viewer/compare/statistics.hpp"

@@ -254,6 +254,41 @@ TEST_F(Window, SavesTheHeadlessPictureAndOpensItAgain) {
   EXPECT_EQ(picture.at("recipe").at("parameters"), recipe.at("parameters"));
 }
 
+TEST_F(Window, RendersNumberedFramesAlongAWay) {
+  ViewerWindow window({fog_, "-t", "volume_slices", "--view", "front", "--size", "32x24"}, folder_);
+  window.wait_picture();
+  window.key("y");
+  window.key("v");
+  window.wait_picture([](const json& recipe) { return recipe.at("view") == "side"; });
+  window.key("y");
+  window.wait_status({"has 2 stops"});
+  // The last section, by the keyboard alone.
+  window.key("shift+Tab");
+  window.key("Right");
+  window.wait_until("the open section", [&] { return window.shows("frames"); });
+  window.key("Tab");
+  window.type("4:2");
+  window.key("Return");
+  window.key("ctrl+a");
+  window.type("4:6");
+  window.key("Return");
+  window.screenshot("frames.png");
+  window.keys("Tab", 4);
+  window.key("Return");
+  const json begun = window.wait("frames", [](const json& e) { return e.at("event") == "frames"; });
+  window.wait("the last frame", [](const json& e) {
+    return e.at("event") == "frames done" && e.at("done") == 3 && !e.at("running").get<bool>();
+  });
+  const std::filesystem::path frames = begun.at("folder").get<std::string>();
+  EXPECT_EQ(frames.parent_path(), folder_.path());
+  for (const auto& [frame, view] : {std::pair{"frame.0004.exr", "front"}, {"frame.0006.exr", "side"}}) {
+    const std::string still = (folder_ / "still.exr").string();
+    ASSERT_TRUE(
+        succeeded(pellucid({"render", fog_, "-t", "volume_slices", "--size", "32x24", "--view", view, "-o", still})));
+    EXPECT_EQ(read_image(frames / frame).image.pixels, read_image(still).image.pixels) << view;
+  }
+}
+
 TEST_F(Window, FollowsTheMonitorsScale) {
   std::string why;
   const std::map<std::string, std::string> display{{"DISPLAY", XServer::get(why)->display()}};

@@ -105,6 +105,12 @@ void App::make_actions() {
     }
   });
   add(GLFW_KEY_K, 0, "K", "keep this set-up as a bookmark", [this] { keep_bookmark(); });
+  add(GLFW_KEY_Y, 0, "Y", "this camera is the next stop of the way for numbered frames", [this] { add_stop(); });
+  add(GLFW_KEY_Y, shift, "Shift+Y", "forget that way", [this] {
+    kept_.way.clear();
+    say("numbered frames: the camera stays where it is");
+  });
+  add(GLFW_KEY_F, ctrl | shift, "Ctrl+Shift+F", "render numbered frames", [this] { render_frames(); });
   add(GLFW_KEY_C, ctrl, "Ctrl+C", "copy the picture as PNG", [this] { copy_picture(".png"); });
   add(GLFW_KEY_C, ctrl | shift, "Ctrl+Shift+C", "copy it as EXR, with all that made it",
       [this] { copy_picture(".exr"); });

@@ -85,6 +85,7 @@ App::App(Kept& kept)
   panel_.add_part(live_part());
   panel_.add_part(display_part());
   panel_.add_part(out_part());
+  panel_.add_part(frames_part());
   if (!options_.tev.empty()) tev_ = std::make_unique<TevClient>(options_.tev);
   if (!options_.shaders.empty()) {
     shader_watch_ = std::make_unique<FileWatch>([] { gl::Window::wake(); });
@@ -193,6 +194,7 @@ std::string App::status() const {
   if (!picture) return "starting the renderer";
   const std::string pixel = pixel_words();
   if (!pixel.empty()) return pixel;
+  if (kept_.frames) return frames_words();
   return fmt::format("{}x{}, {:.1f} ms ({}), {:.0f} MB on {}   ? shows the keys", picture->image.width,
                      picture->image.height, picture->frame_ms, picture->clock,
                      static_cast<double>(picture->gpu_bytes) / 1e6, picture->device);
@@ -282,6 +284,7 @@ void App::tick() {
   tweak();
   follow_window();
   follow_sweep();
+  follow_frames();
   if (status() != drawn_status_) panel_dirty_ = true;  // the seconds count on
   if (!said_.empty() && glfwGetTime() - said_s_ >= kSaid_s) {
     said_.clear();
@@ -328,7 +331,7 @@ void App::write_journal(const Region& at) {
 
 std::optional<double> App::next_wake_s() const {
   if (!flying_.empty() || playing_) return 1.0 / 60;
-  if (workspace_.busy() || second_.busy() || sweep_) return 0.25;
+  if (workspace_.busy() || second_.busy() || sweep_ || kept_.frames) return 0.25;
   if (blink_) return 0.1;
   if (kept_.tweaking) return 0.02;
   std::optional<double> due;

@@ -91,6 +91,13 @@ class App {
   void go_to_bookmark(const std::string&);
   void keep_bookmark();
   void copy_picture(const std::string& extension);
+  // frame_parts.cpp
+  PanelPart frames_part();
+  void add_stop();
+  void render_frames();
+  bool stop_frames();
+  void follow_frames();
+  std::string frames_words() const;
   // measure.cpp
   int measure();
   double until(const char* what, const std::function<bool()>& reached);
@@ -176,6 +183,8 @@ class App {
   Note* compare_note_ = nullptr;
   PushButton* side_button_ = nullptr;
   Choice* bookmark_choice_ = nullptr;
+  Field *frames_field_ = nullptr, *fps_field_ = nullptr;
+  Note* frames_note_ = nullptr;
 
   // live figures
   bool graph_ = false, measuring_ = false;

@@ -174,6 +174,7 @@ bool App::on_key(int key, int action, int modifiers) {
     workspace_.cancel();
     return true;
   }
+  if (key == GLFW_KEY_ESCAPE && stop_frames()) return true;
   const float turn = (modifiers & GLFW_MOD_SHIFT) != 0 ? 15.0F : 3.0F;
   const std::optional<View> view = workspace_.camera();
   if (view && plain) {

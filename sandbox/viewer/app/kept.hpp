@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sandbox/viewer/app/journal.hpp"
 #include "sandbox/viewer/app/tweaking.hpp"
@@ -10,6 +11,7 @@
 #include "sandbox/viewer/compare/second.hpp"
 #include "sandbox/viewer/compare/statistics.hpp"
 #include "sandbox/viewer/display/picture_view.hpp"
+#include "sandbox/viewer/live/frame_series.hpp"
 #include "sandbox/viewer/live/sweep_here.hpp"
 #include "sandbox/viewer/state/workspace.hpp"
 
@@ -33,6 +35,9 @@ struct Kept {
   Layer layer = Layer::picture;
   std::string native_map;
   std::unique_ptr<SweepHere> sweep;
+  std::unique_ptr<FrameSeries> frames;
+  std::vector<std::string> way;  ///< views that the camera of `frames` goes through
+  std::string frames_text = "0:59", fps_text = "30";
   std::optional<Tweaking> tweaking;
   int windows = 0;      ///< opened so far
   std::string trouble;  ///< why the window before this one was closed

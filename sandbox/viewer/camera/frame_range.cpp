@@ -1,4 +1,4 @@
-#include "sandbox/commands/frame_range.hpp"
+#include "sandbox/viewer/camera/frame_range.hpp"
 
 #include <algorithm>
 #include <charconv>
