@@ -102,6 +102,22 @@ TEST_F(Failing, RenderersAndShadersAreToldAndF5GoesOn) {
   });
 }
 
+TEST_F(Failing, ARenderersWarningIsToldOnce) {
+  // A room without a sky, seen by a technique that shows the environment alone: its glass is black.
+  ViewerWindow window({"glass_room", "-t", "front_refraction", "--size", "48x36"}, folder_);
+  window.wait_status({"warning: front_refraction shows the environment alone"});
+  window.screenshot("warning.png");
+  window.key("F5");
+  window.wait_picture();
+  // Another renderer warns again; the window has told it.
+  ::kill(renderer_of(window), SIGSEGV);
+  window.wait_until("no renderer", [&] { return renderer_of(window) == 0; });
+  window.key("F5");
+  window.wait_picture();
+  const auto& all = window.events();
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const json& e) { return is(e, "told"); }), 1);
+}
+
 TEST_F(Failing, ALostContextIsToldInAnotherWindowWithTheSameState) {
   ViewerWindow window({fog_, "-t", "sampling_hulls", "-s", "hulls=3", "--size", "48x36", "--compare", "ray_marching",
                        "--lose-context-at", "3"},

@@ -1,12 +1,17 @@
 #include "algorithms/scene/files/tell.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdio>
+#include <mutex>
 
 namespace pellucid {
 
 namespace {
+
+std::mutex telling;
+std::function<void(std::string_view)> tell_listener;
 
 /// Bytes of the UTF-8 character that the text begins with (RFC 3629); 0 where it begins with none.
 std::size_t character_length(std::string_view text) {
@@ -54,8 +59,25 @@ std::string counted(std::size_t n, std::string_view noun, std::string_view plura
   return plural.empty() ? fmt::format("{} {}s", n, noun) : fmt::format("{} {}", n, plural);
 }
 
+TellListener::TellListener(std::function<void(std::string_view)> hear) {
+  const std::scoped_lock lock(telling);
+  assert(hear && !tell_listener);
+  tell_listener = std::move(hear);
+}
+
+TellListener::~TellListener() {
+  const std::scoped_lock lock(telling);
+  tell_listener = nullptr;
+}
+
 void tell_line(std::string_view line) {
-  fmt::print(stderr, "{}\n", printable(line));
+  const std::string text = printable(line);
+  const std::scoped_lock lock(telling);
+  if (tell_listener) {
+    tell_listener(text);
+  } else {
+    fmt::print(stderr, "{}\n", text);
+  }
 }
 
 }  // namespace pellucid

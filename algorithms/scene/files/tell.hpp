@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,7 +17,17 @@ std::string printable(std::string_view text);
 /// "1 face", "2 faces"; `plural` where it is not the noun and an s.
 std::string counted(std::size_t n, std::string_view noun, std::string_view plural = {});
 
-/// Prints one printable line to standard error.
+/// Hears the lines that are told, in place of standard error, while it lives; one at a time in a process.
+class TellListener {
+ public:
+  /// `hear` is called from any thread, by one at a time, with a printable line.
+  explicit TellListener(std::function<void(std::string_view line)> hear);
+  ~TellListener();
+  TellListener(const TellListener&) = delete;
+  TellListener& operator=(const TellListener&) = delete;
+};
+
+/// Prints one printable line to standard error, or gives it to the listener.
 void tell_line(std::string_view line);
 template <class... T>
 void tell(fmt::format_string<T...> format, T&&... arguments) {

@@ -16,6 +16,7 @@
 
 #include "gl/context.hpp"
 #include "gl/error.hpp"
+#include "sandbox/viewer/live/keep_memory.hpp"
 #include "sweeps/spec/provenance.hpp"
 
 #define GLFW_INCLUDE_NONE
@@ -25,7 +26,8 @@ namespace pellucid::sandbox {
 namespace {
 
 constexpr double kSaid_s = 6;
-constexpr double kHeldBack_s = 0.08;
+// The panel waits for a frame that is on its way, a quarter longer than the last one took, within these bounds.
+constexpr double kHeldBackLeast_s = 0.08, kHeldBackMost_s = 0.3;
 constexpr int kStatusHeight = 22;
 
 std::string title(const ViewState& state) {
@@ -240,6 +242,14 @@ void App::show_pictures() {
   if (changed) upload_pictures();
 }
 
+void App::tell_notes() {
+  const std::vector<std::string> notes = workspace_.take_notes();
+  if (notes.empty()) return;
+  for (const std::string& words : notes)
+    journal_.write({{"event", "told"}, {"words", words}});
+  say(fmt::format("{}", fmt::join(notes, "; ")), true);
+}
+
 void App::follow_window() {
   if (!options_.size_follows_window) return;
   const Region at = region();
@@ -277,6 +287,7 @@ void App::tweak() {
 
 void App::tick() {
   if (workspace_.poll()) panel_dirty_ = true;
+  tell_notes();
   watch_files();
   show_pictures();
   fly();
@@ -298,6 +309,7 @@ void App::draw(bool with_panel) {
   if (zoom_.fitted && shown_[0])
     zoom_.fit(at, shown_[0]->image.width, shown_[0]->image.height, effective_display().mode);
   if (with_panel || !layer_.fits(framebuffer_width_, framebuffer_height_)) {
+    const bool busy = workspace_.busy();
     panel_.update();
     drawn_status_ = status();
     layer_.begin(framebuffer_width_, framebuffer_height_);
@@ -305,6 +317,7 @@ void App::draw(bool with_panel) {
     PanelLayer::end();
     panel_dirty_ = false;
     held_since_s_ = -1;
+    journal_.write({{"event", "panel"}, {"busy", busy}});
   }
   if (shown_[0]) pictures_.draw(effective_display(), at, zoom_);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -356,11 +369,15 @@ bool App::draw_or_give_up(bool with_panel) {
   }
 }
 
+double App::longest_hold_s() const {
+  return std::clamp(1.25 * shown_[0]->frame_ms / 1000, kHeldBackLeast_s, kHeldBackMost_s);
+}
+
 // The panel waits for a frame that comes within a moment: else the two share the processor, where that rasterises, and
 // the frame comes later.
 bool App::holds_back() {
   const double now = glfwGetTime();
-  if (!workspace_.busy() || !shown_[0] || (held_since_s_ >= 0 && now - held_since_s_ > kHeldBack_s)) {
+  if (!workspace_.busy() || !shown_[0] || (held_since_s_ >= 0 && now - held_since_s_ > longest_hold_s())) {
     held_since_s_ = -1;
     return false;
   }
@@ -370,7 +387,7 @@ bool App::holds_back() {
 
 bool App::turn(std::optional<double> longest_s) {
   const bool dirty = panel_dirty_ || picture_dirty_;
-  gl::Window::wait_events(held_since_s_ >= 0 && !picture_dirty_ ? std::optional(kHeldBack_s / 4)
+  gl::Window::wait_events(held_since_s_ >= 0 && !picture_dirty_ ? std::optional(kHeldBackLeast_s / 4)
                           : dirty                               ? std::optional(0.0)
                                                                 : longest_s);
   tick();
@@ -403,6 +420,7 @@ std::optional<int> App::run() {
 }
 
 int run_viewer(const ViewerOptions& options) {
+  keep_freed_memory();
   // A pipe or a file that takes no more is an error to be told, not the end of the program.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

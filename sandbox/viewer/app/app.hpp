@@ -119,10 +119,12 @@ class App {
   void draw(bool with_panel);
   bool draw_or_give_up(bool with_panel);
   bool holds_back();
+  double longest_hold_s() const;
   bool turn(std::optional<double> longest_s);  ///< of the loop; false when the graphics context failed
   void write_journal(const Region&);
   void show_pictures();
   void follow_window();
+  void tell_notes();
   void play();
   void watch_files();
   void tweak();

@@ -99,6 +99,8 @@ bool Second::poll() {
       any = true;
     } else if (const auto* refused = std::get_if<RefusedEvent>(&event)) {
       if (refused->generation == generation_) trouble_ = refused->reason;
+    } else if (const auto* told = std::get_if<ToldEvent>(&event)) {
+      workspace_.note(told->words);
     } else if (const auto* ended = std::get_if<EndedEvent>(&event)) {
       if (!ended->reason.empty()) trouble_ = ended->reason;
     }

@@ -70,6 +70,10 @@ struct EndedEvent {  ///< the renderer's process is gone; the next request start
   std::uint64_t generation = 0;
   std::string reason;  ///< empty after cancel()
 };
-using RenderEvent = std::variant<PhaseEvent, SceneEvent, PictureEvent, RefusedEvent, ShadersEvent, EndedEvent>;
+struct ToldEvent {  ///< a warning, or another line that `pellucid render` prints to standard error
+  std::string words;
+};
+using RenderEvent =
+    std::variant<PhaseEvent, SceneEvent, PictureEvent, RefusedEvent, ShadersEvent, EndedEvent, ToldEvent>;
 
 }  // namespace pellucid::sandbox

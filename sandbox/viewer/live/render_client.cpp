@@ -300,6 +300,8 @@ void RenderClient::hear(const std::string& line) {
       process_.reset();
       pid_ = 0;
     }
+  } else if (type == "told") {
+    put(ToldEvent{message.at("words")});
   } else if (type == "shaders") {
     put(ShadersEvent{message.at("error")});
     answered_ = true;

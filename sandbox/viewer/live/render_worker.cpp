@@ -19,10 +19,12 @@
 
 #include "algorithms/progress.hpp"
 #include "algorithms/render_session.hpp"
+#include "algorithms/scene/files/tell.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
 #include "gl/live_objects.hpp"
+#include "sandbox/viewer/live/keep_memory.hpp"
 #include "sandbox/viewer/live/shared_pixels.hpp"
 #include "sandbox/viewer/state/parameter_json.hpp"
 #include "sandbox/viewer/state/view_state.hpp"
@@ -35,7 +37,10 @@ namespace {
 
 using nlohmann::json;
 
+// From any thread.
 void tell(const json& message) {
+  static std::mutex writing;
+  const std::scoped_lock lock(writing);
   std::cout << sweeps::to_line(message) << std::endl;
 }
 
@@ -58,7 +63,7 @@ class RenderWorker {
           [this](std::string_view work, double share) { progress(fmt::format("precomputing, {}", work), share); });
       return session_->prepare();
     }();
-    precompute_ = false;
+    if (std::exchange(precompute_, false)) phase("drawing");
     gl::PassTimer timer(gl::Detail::passes);
     session_->render(timer);
     const auto time = timer.wait();
@@ -252,8 +257,11 @@ class RenderWorker {
 }  // namespace
 
 int run_render_worker(std::optional<int> device) {
+  keep_freed_memory();
   const gl::Context context({.device = device});
   tell({{"type", "hello"}, {"device", context.device().renderer}, {"driver", context.device().version}});
+  // A warning belongs into the window.
+  const TellListener told([](std::string_view line) { tell({{"type", "told"}, {"words", line}}); });
   RenderWorker worker(context);
   for (std::string line; std::getline(std::cin, line);) {
     const json request = json::parse(line);

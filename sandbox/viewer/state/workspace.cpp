@@ -331,6 +331,10 @@ void Workspace::scene_loaded(const LoadedScene& loaded) {
   if (carried) ask();
 }
 
+void Workspace::note(const std::string& words) {
+  if (told_.insert(words).second) notes_.push_back(words);
+}
+
 void Workspace::hear(Side side, const RenderEvent& event) {
   if (const auto* phase = std::get_if<PhaseEvent>(&event)) {
     if (phase_ != phase->words) phase_began_s_ = now_s();
@@ -350,6 +354,8 @@ void Workspace::hear(Side side, const RenderEvent& event) {
       last_failure_ = refused->reason;
     }
     phase_.clear();
+  } else if (const auto* told = std::get_if<ToldEvent>(&event)) {
+    note(told->words);
   } else if (const auto* shaders = std::get_if<ShadersEvent>(&event)) {
     shader_error_ = shaders->error;
     ask();

@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sandbox/viewer/live/render_client.hpp"
@@ -70,6 +72,10 @@ class Workspace {
 
   /// Takes what the renderers have to tell; true when anything did.
   bool poll();
+  /// Keeps a line that a renderer told, unless one has told it before.
+  void note(const std::string& words);
+  /// The lines that are new since the last call.
+  std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
   const std::shared_ptr<const Picture>& picture(Side side) const { return picture_[index(side)]; }
   /// The picture is of an earlier state than the panel's.
   bool stale(Side side) const;
@@ -116,6 +122,8 @@ class Workspace {
   std::string phase_, shader_error_, last_failure_;
   std::size_t failures_ = 0;
   double phase_began_s_ = 0, phase_share_ = -1;
+  std::set<std::string> told_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace pellucid::sandbox
