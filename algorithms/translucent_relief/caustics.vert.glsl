@@ -44,7 +44,7 @@ void main() {
   to_light = to_frame * to_light;
   if (to_light.z <= 0.0) return;
   vec3 n = bare ? vec3(0.0, 0.0, 1.0) : medium_normal(source * tiling, 1.0 / metres);
-  float cosine = dot(to_light, n), eta = bare ? 1.0 : outside_index / index;
+  float cosine = dot(to_light, n), eta = bare ? 1.0 : index_ratios.x;
   if (cosine <= 0.0) return;
   float reflected_share = bare ? 0.0 : fresnel_dielectric(cosine, eta);
   if (reflected_share >= 1.0) return;

@@ -1,5 +1,5 @@
 // Rays against a height field through a map of empty cones (Dummer 2006), which cone_map() makes, or of relaxed ones (Policarpo
-// and Oliveira 2007) by relaxed_cone_map() (height_pyramid.cpp). The includer defines above() of search.glsl and cone_at().
+// and Oliveira 2007) by relaxed_cone_map() (height_pyramid.cpp). The includer defines height_at() of search.glsl and cone_at().
 
 // As linear_crossing(), from above only, through a map of cones: cone_at() gives their width over their height at a point of
 // the mesh's texture, both in units of the map, for rays that rise or fall; `range_m` is the layer's height and `tiles` as
@@ -15,11 +15,11 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
   float least = (range.y - range.x) / float(steps);
   float before = range.x, height_before = 0.0, t = range.x;
   for (int i = 0; i < steps; ++i) {
-    float height = above(layer, over_map(ray, tiles, t));
+    float height = above(layer, ray, tiles, t);
     taken += 1.0;
     if (height < -bias && t > range.x) {
       for (int k = 0; k < refinements; ++k) {
-        float middle = 0.5 * (before + t), at_middle = above(layer, over_map(ray, tiles, middle));
+        float middle = 0.5 * (before + t), at_middle = above(layer, ray, tiles, middle);
         taken += 1.0;
         if (at_middle < 0.0) {
           t = middle;
@@ -38,7 +38,7 @@ float cone_crossing(int layer, Ray ray, vec2 tiles, float range_m, vec2 range, f
     t += max(step, least);
     if (t >= range.y) {
       t = range.y;
-      if (above(layer, over_map(ray, tiles, t)) >= -bias) return -1.0;
+      if (above(layer, ray, tiles, t) >= -bias) return -1.0;
     }
   }
   return upward < 0.0 ? t : -1.0;  // so near that the steps gave out; upwards it runs along the surface

@@ -24,44 +24,71 @@ const int kSolid = 0, kMedium = 1, kEither = 2;
 const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
 
 #ifdef COUNT
-// Fetches of the layers' heights and what speeds up their search, by the kind of ray; and of the solid's normals and colours,
-// of the medium's normals, of the environment.
-vec4 solid_fetches = vec4(0.0), medium_fetches = vec4(0.0), other_fetches = vec4(0.0);
-int ray_kind = kView;
-#define FETCHED(which, n) which += float(n)
+#include "algorithms/translucent_relief/bench/recorded_searches.glsl"
+layout(binding = 0, r32ui) uniform writeonly uimage2DArray records;  // a word in a layer
+float fetches = 0.0;                                                 // of all maps
+uint heights = 0u;                                                   // and in one search
+int next_search = kViewSearch;
+int turn = 0;
+uint fragment = 0u;
+void record(int word, uint value) { imageStore(records, ivec3(gl_FragCoord.xy, word), uvec4(value)); }
+void record_search(bool met, vec2 at, vec2 end) {
+  record(next_search++, search_word(heights, met, (end - at) / float(max(heights, 1u))));
+  heights = 0u;
+}
+#define RECORDED(what) what
+#define FETCHED(n) fetches += float(n)
+#define FETCHED_HEIGHT() fetches += 1.0, ++heights
 #else
-#define FETCHED(which, n)
+#define RECORDED(what)
+#define FETCHED(n)
+#define FETCHED_HEIGHT()
 #endif
 
 // At a place of the maps.
-float solid_height(vec2 at) {
-  FETCHED(solid_fetches[ray_kind], 1);
-  return solid_range.x + solid_range.y * textureLod(solid_heights, at, 0.0).r;
+float solid_texel(vec2 at) {
+  FETCHED_HEIGHT();
+  return textureLod(solid_heights, at, 0.0).r;
 }
+float medium_texel(vec2 at) {
+#ifdef TWO_LAYERS
+  FETCHED_HEIGHT();
+  return textureLod(medium_heights, at, 0.0).r;
+#else
+  return 0.0;
+#endif
+}
+float solid_height(vec2 at) { return solid_range.x + solid_range.y * solid_texel(at); }
 float medium_height(vec2 at) {
 #ifdef TWO_LAYERS
-  FETCHED(medium_fetches[ray_kind], 1);
-  return medium_range.x + medium_range.y * textureLod(medium_heights, at, 0.0).r;
+  return medium_range.x + medium_range.y * medium_texel(at);
 #else
   return -1e9;
 #endif
 }
 
-float above(int layer, vec3 at) {
-  if (layer == kSolid) return at.z - solid_height(at.xy);
-  if (layer == kMedium) return at.z - medium_height(at.xy);
-  return at.z - max(solid_height(at.xy), medium_height(at.xy));
+// Both together are given in metres, so that the greater may be taken.
+vec2 units_of(int layer) {
+#ifdef TWO_LAYERS
+  if (layer == kMedium) return medium_range;
+#endif
+  return layer == kSolid ? solid_range : vec2(0.0, 1.0);
+}
+float height_at(int layer, vec2 at) {
+  if (layer == kSolid) return solid_texel(at);
+  if (layer == kMedium) return medium_texel(at);
+  return max(solid_height(at), medium_height(at));
 }
 
 vec2 extremes(int layer, ivec2 cell, int level) {
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
-    FETCHED(medium_fetches[ray_kind], 1);
+    FETCHED_HEIGHT();
     ivec2 size = max(textureSize(medium_heights, 0) >> level, ivec2(1));
     return medium_range.x + medium_range.y * texelFetch(medium_acceleration, cell & (size - 1), level).rg;
   }
 #endif
-  FETCHED(solid_fetches[ray_kind], 1);
+  FETCHED_HEIGHT();
   ivec2 size = max(textureSize(solid_heights, 0) >> level, ivec2(1));
   return solid_range.x + solid_range.y * texelFetch(solid_acceleration, cell & (size - 1), level).rg;
 }
@@ -79,11 +106,11 @@ vec4 corners(int layer, ivec2 cell) {
   vec2 middle = vec2(cell + 1) / vec2(map_size(layer));
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
-    FETCHED(medium_fetches[ray_kind], 1);
+    FETCHED_HEIGHT();
     return medium_range.x + medium_range.y * textureGather(medium_heights, middle).wzxy;
   }
 #endif
-  FETCHED(solid_fetches[ray_kind], 1);
+  FETCHED_HEIGHT();
   return solid_range.x + solid_range.y * textureGather(solid_heights, middle).wzxy;
 }
 float cone_at(int layer, vec2 at, bool falls) {
@@ -94,11 +121,11 @@ float cone_at(int layer, vec2 at, bool falls) {
 #endif
 #ifdef TWO_LAYERS
   if (layer == kMedium) {
-    FETCHED(medium_fetches[ray_kind], 1);
+    FETCHED_HEIGHT();
     return textureLod(medium_acceleration, at, 0.0)[which];
   }
 #endif
-  FETCHED(solid_fetches[ray_kind], 1);
+  FETCHED_HEIGHT();
   return textureLod(solid_acceleration, at, 0.0)[which];
 }
 float range_of(int layer) {
@@ -130,12 +157,12 @@ vec3 normal_of(vec4 texel, bool normal_map, float range, vec2 uv_per_metre) {
   return normalize(normal_map ? texel.xyz : vec3(-range * texel.xy * tiling * uv_per_metre, 1.0));
 }
 vec3 solid_normal(vec2 at, vec2 uv_per_metre) {
-  FETCHED(other_fetches.x, 1);
+  FETCHED(1);
   return normal_of(textureLod(solid_normals, at, 0.0), solid_normal_map, solid_range.y, uv_per_metre);
 }
 vec3 medium_normal(vec2 at, vec2 uv_per_metre) {
 #ifdef TWO_LAYERS
-  FETCHED(other_fetches.z, 1);
+  FETCHED(1);
   return normal_of(textureLod(medium_normals, at, 0.0), medium_normal_map, medium_range.y, uv_per_metre);
 #else
   return vec3(0.0, 0.0, 1.0);

@@ -6,8 +6,7 @@
 #include "algorithms/translucent_relief/scattering.glsl"
 #endif
 
-uniform float outside_index;  // n1
-uniform float index;          // n2
+uniform vec2 index_ratios;    // n1 / n2 and its inverse
 uniform vec3 absorption;      // [1/m]
 uniform vec4 step_counts;    // of view, reflected, refracted and light rays
 uniform vec4 refinements;  // whole numbers, both
@@ -25,9 +24,7 @@ float find_crossing(int layer, Ray ray, float from, float side, int kind) {
   float count = 0.0;
   float t;
   vec2 range = clip_to_layer(layer, ray, from);
-#ifdef COUNT
-  ray_kind = kind;
-#endif
+  RECORDED(heights = 0u;)
 #if SEARCH == 1
   t = max_mip_crossing(layer, ray, tiling, range, side, 16 * int(step_counts[kind]), count);
 #else
@@ -42,6 +39,8 @@ float find_crossing(int layer, Ray ray, float from, float side, int kind) {
     t = linear_crossing(layer, ray, tiling, range, side, bias, steps, halvings, count);
 #endif
   taken[kind] += count;
+  RECORDED(if (layer == kEither) heights /= 2u;)
+  RECORDED(record_search(t >= 0.0, tiling * uv_at(ray, range.x), tiling * uv_at(ray, t < 0.0 ? range.y : t));)
   return t;
 }
 
@@ -54,15 +53,19 @@ vec3 light_reaching(Ray frame, vec3 p, vec3 to_light, float side) {
   if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) return vec3(0.0);
 #ifdef TWO_LAYERS
   float share = 1.0, inside = 0.0, from = 0.0;
-  for (int i = 0; i < boundaries; ++i) {
+  int i = 0;
+  bool met;
+  do {
     float t = find_crossing(kMedium, ray, from, side, kLight);
-    if (t < 0.0) break;
-    float cosine = abs(dot(to_light, medium_normal(tiling * uv_at(ray, t), ray.uv_per_metre)));
-    share *= 1.0 - fresnel_dielectric(cosine, side < 0.0 ? outside_index / index : index / outside_index);
-    if (side < 0.0) inside += t - from;
-    from = t;
-    side = -side;
-  }
+    met = t >= 0.0;
+    if (met) {
+      float cosine = abs(dot(to_light, medium_normal(tiling * uv_at(ray, t), ray.uv_per_metre)));
+      share *= 1.0 - fresnel_dielectric(cosine, side < 0.0 ? index_ratios.x : index_ratios.y);
+      if (side < 0.0) inside += t - from;
+      from = t;
+      side = -side;
+    }
+  } while (met && ++i < boundaries);
   if (side < 0.0) inside += max(clip_to_layer(kEither, ray, from).y - from, 0.0);
 #ifdef ABSORPTION
 #ifdef SCATTERING

@@ -22,10 +22,9 @@ uniform vec2 solid_phong;   // specular, exponent
 uniform vec2 medium_phong;
 uniform float intensification;
 uniform float plane_height;  // of the flat solid that planar rays meet
-uniform bool planar_reflections;
-uniform bool planar_refractions;
-uniform int show;
+uniform float least_shine;  // cosine from which on the medium's highlight counts
 
+// SHOW, the parameter `show`, is compiled in.
 const int kShowRadiance = 0, kShowReflections = 1, kShowOcclusion = 2, kShowSteps = 3;
 
 #ifdef REPORT
@@ -34,9 +33,7 @@ layout(location = 1) out vec4 report_ray;     // direction in the frame; a step 
 layout(location = 2) out vec4 report_scale;   // metres over u and v; heights asked for; 1
 layout(location = 3) out vec4 report_light;   // of the first light: direction in the frame, share that reaches the hit
 #elif defined(COUNT)
-layout(location = 0) out vec4 solid_count;  // as layers.glsl counts
-layout(location = 1) out vec4 medium_count;
-layout(location = 2) out vec4 other_count;
+layout(location = 0) out float fetch_count;
 #else
 layout(location = 0) out vec4 radiance;
 #endif
@@ -51,7 +48,7 @@ vec3 to_world_point(vec3 p) { return world_position + p * to_frame; }
 #endif
 
 vec3 sky_radiance(vec3 direction) {
-  FETCHED(other_fetches.w, 1);
+  FETCHED(1);
   return environment_radiance(direction);
 }
 
@@ -73,13 +70,20 @@ vec3 facing(vec3 n, vec3 v) {
 }
 
 // Where a ray from the medium's surface meets the solid: by search, or a plane at its mean height. Negative: nowhere.
-float meet_solid(Ray ray, int kind, bool planar) {
-  if (!planar) return find_crossing(kSolid, ray, 0.0, 1.0, kind);
-  if (ray.direction.z >= -1e-6) return -1.0;
-  float t = max((plane_height - ray.origin.z) / ray.direction.z, 0.0);
-  vec2 range = clip_ray(ray, -1e9, 1e9, cut, 0.0);
-  return t <= range.y ? t : -1.0;
+float meet_solid(Ray ray, bool reflection) {
+  if (reflection ? !PLANAR_REFLECTIONS : !PLANAR_REFRACTIONS)
+    return find_crossing(kSolid, ray, 0.0, 1.0, reflection ? kReflected : kRefracted);
+  float t = -1.0;
+  if (ray.direction.z < -1e-6) {
+    t = max((plane_height - ray.origin.z) / ray.direction.z, 0.0);
+    if (t > clip_ray(ray, -1e9, 1e9, cut, 0.0).y) t = -1.0;
+  }
+  RECORDED(heights = 0u; record_search(t >= 0.0, vec2(0.0), vec2(0.0));)
+  return t;
 }
+
+// How far a ray that meets no solid has to the end of the layers.
+float way_out(Ray ray) { return max(clip_to_layer(kEither, ray, 0.0).y, 0.0); }
 
 // A place that light falls on.
 struct Place {
@@ -99,7 +103,7 @@ vec3 gathered_irradiance(Ray frame, Place place, int i, vec3 to_light) {
   // Where a near light's ray comes in depends on how it is bent there: by repeated substitution.
   for (int k = kLightKinds[i] == kDirectional ? 3 : 0; k < 4; ++k) {
     if (to_light.z <= 0.0) return vec3(0.0);
-    bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), outside_index / index);
+    bent = -refract(-to_light, vec3(0.0, 0.0, 1.0), index_ratios.x);
     if (bent.z <= 0.0) return vec3(0.0);
     entry = p + rise / bent.z * bent;
     light_irradiance(i, to_world_point(entry), to_light);
@@ -120,31 +124,35 @@ vec3 gathered_irradiance(Ray frame, Place place, int i, vec3 to_light) {
 // The light that a place sends back of the lights' and the ambient light; the paper's SAMPLE. `occlusion`: of the first light.
 vec3 reflected_radiance(Ray frame, Place place, inout float occlusion) {
   vec3 p = place.p, sum = place.albedo * ambient_count.rgb;
-  for (int i = 0; i < LIGHT_COUNT; ++i) {
+#if LIGHT_COUNT > 0
+  int i = 0;
+  do {
     vec3 to_light;
-    vec3 irradiance = light_irradiance(i, to_world_point(p), to_light) / kPi;
+    vec3 irradiance = light_irradiance(i, to_world_point(p), to_light) * (1.0 / kPi);
     to_light = to_frame * to_light;
     float cosine = dot(place.n, to_light);
+    RECORDED(next_search = light_search(turn, i, boundaries);)
+    bool straight = true;
 #ifdef CAUSTICS
-    if (place.side < 0.0) {
-      sum += place.albedo * gathered_irradiance(frame, place, i, to_light) / kPi;
-      continue;
-    }
+    straight = place.side >= 0.0;
+    if (!straight) sum += place.albedo * gathered_irradiance(frame, place, i, to_light) / kPi;
 #endif
-    bool shown = show == kShowOcclusion && i == 0 && !place.see_through;
-    if (cosine <= 0.0 && !shown) continue;
+    bool shown = SHOW == kShowOcclusion && i == 0 && !place.see_through;
     float highlight = phong(place.shine, place.mirrored, to_light);
-    if (place.see_through && highlight < 1e-4 && place.albedo == vec3(0.0)) continue;
-    vec3 share = light_reaching(frame, p, to_light, place.side) * object_visibility(i, p, to_light);
-    if (shown) occlusion = max(share.r, max(share.g, share.b));
-    if (cosine > 0.0) sum += irradiance * share * (place.albedo * cosine + highlight);
-  }
+    bool answers = cosine > 0.0 && (!place.see_through || highlight >= 1e-4 || place.albedo != vec3(0.0));
+    if (straight && (answers || shown)) {
+      vec3 share = light_reaching(frame, p, to_light, place.side) * object_visibility(i, p, to_light);
+      if (shown) occlusion = max(share.r, max(share.g, share.b));
+      if (cosine > 0.0) sum += irradiance * share * (place.albedo * cosine + highlight);
+    }
+  } while (++i < LIGHT_COUNT);
+#endif
   return sum;
 }
 
 // A point of the solid that is seen along `v`.
 Place solid_place(Ray frame, vec3 p, vec3 v) {
-  FETCHED(other_fetches.y, 1);
+  FETCHED(1);
   vec2 at = tiling * (frame.uv + p.xy * frame.uv_per_metre);
   vec3 n = solid_normal(at, frame.uv_per_metre);
   vec3 albedo = solid_albedo * tint * textureLod(solid_colors, at, 0.0).rgb;
@@ -173,86 +181,97 @@ vec3 through_scattering(Ray ray, float t, float path) {
 #ifdef TWO_LAYERS
 // The medium's surface at `p` as lights see it.
 bool shines(vec3 p, vec3 n, vec3 mirrored) {
-  if (show != kShowRadiance || medium_phong.x <= 0.0) return false;
   bool any_light = false;
-  for (int i = 0; i < LIGHT_COUNT; ++i) {
+#if LIGHT_COUNT > 0
+  int i = 0;
+  do {
     vec3 to_light;
     light_irradiance(i, to_world_point(p), to_light);
     to_light = to_frame * to_light;
-    if (phong(medium_phong, mirrored, to_light) >= 1e-4 && dot(n, to_light) > 0.0) any_light = true;
-  }
-  return any_light;
+    if (dot(mirrored, to_light) >= least_shine && dot(n, to_light) > 0.0) any_light = true;
+  } while (++i < LIGHT_COUNT);
+#endif
+  return any_light && SHOW == kShowRadiance;
 }
 #endif
 
 // Radiance seen along `v` at its hit `p`: the solid, or on the medium's surface what comes through it, what it reflects from
 // the solid or the environment, and the lights' own reflections. First rays are followed, then lights to the places that
-// they met; each in one loop, so that a shader holds a search once, and processors that run pixels in step do nothing for
-// places that none of the pixels has.
+// they met; each in one loop, so that a shader holds a search once. All loops here test at their end: processors that run
+// pixels in step, and llvmpipe, leave a loop when the last pixel does, and one that tests at its begin goes through all of its
+// body once more before.
 vec3 seen_radiance(Ray frame, vec3 p, vec3 v, bool on_medium, out float occlusion) {
   const int kThrough = 0, kReflection = 1, kSurface = 2;
   int places = 1 << kThrough;  // a bit for each that needs light
   vec3 sum = vec3(0.0), n = vec3(0.0), bent = v, mirrored = v, seen_at = p, reflected_at = p;
-  vec3 through = vec3(1.0), back = vec3(0.0), mark = vec3(0.0);
+  vec3 through = vec3(1.0), ahead = vec3(0.0), back = vec3(0.0), mark = vec3(0.0);
   vec2 surface_shine = vec2(0.0);
   float reflected_share = 0.0;
 #ifdef TWO_LAYERS
   int part = 0, parts = 0;
+  float seen_after = 0.0, way = -1.0;
   if (on_medium) {
     n = facing(medium_normal(tiling * (frame.uv + p.xy * frame.uv_per_metre), frame.uv_per_metre), v);
-    float eta = outside_index / index;
+    float eta = index_ratios.x;
     reflected_share = fresnel_dielectric(-dot(v, n), eta);
+    through = vec3(1.0 - reflected_share);
     bent = refract(v, n, eta);
     mirrored = reflect(v, n);
     surface_shine = vec2(mix(reflected_share, 1.0, intensification) * medium_phong.x, medium_phong.y);
     places = shines(p, n, mirrored) ? 1 << kSurface : 0;
     part = reflected_share < 1.0 ? kThrough : kReflection;
+    RECORDED(fragment |= part == kThrough ? kOnMedium : kOnMedium | kOnlyReflected;)
     parts = kReflection + 1;
   }
-  for (; part < parts; ++part) {
+  if (part < parts) do {
     bool reflection = part == kReflection;
+    RECORDED(next_search = part_search(part);)
     Ray ray = Ray(p, reflection ? mirrored : bent, frame.uv, frame.uv_per_metre);
-    float t = meet_solid(ray, reflection ? kReflected : kRefracted,
-                         reflection ? planar_reflections : planar_refractions);
-    float end = t < 0.0 ? max(clip_to_layer(kEither, ray, 0.0).y, 0.0) : t;
-    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(ray.direction)) : vec3(0.0), share = vec3(reflected_share);
+    float t = meet_solid(ray, reflection);
+    vec3 color = t < 0.0 ? sky_radiance(to_world_direction(ray.direction)) : vec3(0.0);
     bool solid = t >= 0.0;
 #ifdef OBJECTS
     vec3 object_color;
-    float reach = !solid && reflection ? object_reach : end;
+    float end = t < 0.0 ? way_out(ray) : t, reach = !solid && reflection ? object_reach : end;
     float object = meet_object(to_world_point(p), to_world_direction(ray.direction), reach, object_color);
     if (object >= 0.0) {
       color = object_color;
-      end = object;
       solid = false;
+      if (!reflection) way = object;
     }
 #endif
     if (reflection) {
       reflected_at = p + t * mirrored;
       mark = t < 0.0 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
-      if (show == kShowReflections) solid = false, share = vec3(0.0);
+      if (SHOW == kShowReflections) solid = false, color = vec3(0.0);
+      sum = reflected_share * color;
     } else {
       seen_at = p + t * bent;
-      share = vec3(1.0 - reflected_share);
-#ifdef ABSORPTION
-      float leaves = find_crossing(kMedium, ray, 0.0, -1.0, kRefracted);
-      float inside = leaves < 0.0 ? end : min(leaves, end);
-#ifdef SCATTERING
-      back = share * scattered_reflectance(inside);
-      places |= 1 << kSurface;
-      share *= t < 0.0 ? scattered_transmittance(inside) : through_scattering(ray, t, inside);
-#else
-      share *= transmitted(absorption, inside);
-#endif
-#endif
-      through = share;
+      seen_after = t;
+      ahead = color;
     }
     if (solid) places |= 1 << part;
-    sum += share * color;
+  } while (++part < parts);
+#ifdef ABSORPTION
+  if (on_medium && reflected_share < 1.0) {
+    Ray ray = Ray(p, bent, frame.uv, frame.uv_per_metre);
+    RECORDED(next_search = part_search(kThrough) + 1;)
+    float leaves = find_crossing(kMedium, ray, 0.0, -1.0, kRefracted);
+    if (way < 0.0) way = seen_after < 0.0 ? way_out(ray) : seen_after;
+    float inside = leaves < 0.0 ? way : min(leaves, way);
+#ifdef SCATTERING
+    back = through * scattered_reflectance(inside);
+    places |= 1 << kSurface;
+    through *= seen_after < 0.0 ? scattered_transmittance(inside) : through_scattering(ray, seen_after, inside);
+#else
+    through *= transmitted(absorption, inside);
+#endif
   }
 #endif
+  sum += through * ahead;
+#endif
   occlusion = 1.0;
-  while (places != 0) {
+  if (places != 0) do {
     int at = findLSB(places);
     places &= places - 1;
     Place place = Place(p, n, mirrored, 1.0, back, surface_shine, true);
@@ -262,11 +281,15 @@ vec3 seen_radiance(Ray frame, vec3 p, vec3 v, bool on_medium, out float occlusio
       place = solid_place(frame, reflection ? reflected_at : seen_at, reflection ? mirrored : bent);
       share = reflection ? vec3(reflected_share) : through;
     }
+    RECORDED(fragment |= place_word(turn, at == kSurface    ? kSurfacePlace
+                                          : at == kThrough ? kThroughPlace
+                                                           : kReflectedPlace);)
     float reached = 1.0;
     sum += share * reflected_radiance(frame, place, reached);
     if (at == kThrough) occlusion = reached;
-  }
-  return show == kShowReflections && on_medium ? mix(sum, mark, 0.6) : sum;
+    RECORDED(++turn;)
+  } while (places != 0);
+  return SHOW == kShowReflections && on_medium ? mix(sum, mark, 0.6) : sum;
 }
 
 void main() {
@@ -338,15 +361,14 @@ void main() {
 #else
   vec3 color = vec3(0.0);
   if (t >= 0.0) color = seen_radiance(ray, p, v, on_medium, occlusion);
-  if (show == kShowOcclusion) color = vec3(occlusion);
-  if (show == kShowSteps) {
+  if (SHOW == kShowOcclusion) color = vec3(occlusion);
+  if (SHOW == kShowSteps) {
     float most = dot(step_counts, vec4(1.0));
     color = vec3(dot(taken, vec4(1.0)) / most);
   }
 #ifdef COUNT
-  solid_count = solid_fetches;
-  medium_count = medium_fetches;
-  other_count = other_fetches;
+  fetch_count = fetches;
+  record(0, t < 0.0 ? fragment : fragment | kSeen);
 #else
   radiance = vec4(color, 1.0);
 #endif
@@ -355,7 +377,7 @@ void main() {
 #else
   // Depth over the distance from the eye is far / (far − near) − c / distance along a ray.
   float at_infinity = clip_planes.y / (clip_planes.y - clip_planes.x);
-  float nearer = distance(world_position, eye) / distance(to_world_point(p), eye);
+  float to_mesh = distance(world_position, eye), nearer = to_mesh / (to_mesh + t);
   gl_FragDepth = clamp(at_infinity - (at_infinity - gl_FragCoord.z) * nearer, 0.0, 1.0);
 #endif
 #endif

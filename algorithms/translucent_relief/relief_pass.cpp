@@ -1,6 +1,7 @@
 #include "algorithms/translucent_relief/relief_pass.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -12,7 +13,8 @@ namespace {
 
 const std::string kVertex = "algorithms/translucent_relief/relief.vert.glsl";
 const std::string kFragment = "algorithms/translucent_relief/relief.frag.glsl";
-constexpr GLuint kFirstCountUnit = 12;  // of bare_relief.frag.glsl
+const std::string kBare = "algorithms/translucent_relief/bench/bare_relief.frag.glsl";
+constexpr GLuint kRecordsImage = 0, kRecordsUnit = 14;
 
 }  // namespace
 
@@ -38,6 +40,10 @@ gl::Defines ReliefPass::defines(const Relief& relief, const ForwardPass& forward
   defines.insert(defines.end(), environment.begin(), environment.end());
   defines.emplace_back("MAPPING", parameters_.mapping == Mapping::normal ? "0" : "1");
   defines.emplace_back("SEARCH", std::to_string(static_cast<int>(parameters_.search)));
+  defines.emplace_back("SHOW", std::to_string(static_cast<int>(parameters_.show)));
+  const auto flag = [](bool value) { return value ? "true" : "false"; };
+  defines.emplace_back("PLANAR_REFLECTIONS", flag(parameters_.local_rays != LocalRays::traced));
+  defines.emplace_back("PLANAR_REFRACTIONS", flag(parameters_.local_rays == LocalRays::planar));
   if (two_layers(relief)) defines.emplace_back("TWO_LAYERS", "1");
   if (parameters_.boxes == Boxes::separate) defines.emplace_back("SEPARATE_BOXES", "1");
   if (parameters_.occlusion && parameters_.mapping == Mapping::relief) defines.emplace_back("OCCLUSION", "1");
@@ -91,9 +97,6 @@ void ReliefPass::set_uniforms(const Scene& scene, const Instance& instance, cons
   program.set("solid_albedo", relief.solid.albedo * material_of(scene, instance).albedo * instance.tint);
   program.set("solid_phong", glm::vec2(relief.solid.specular, relief.solid.exponent));
   program.set("plane_height", maps.mean_solid_height_m(relief));
-  program.set("planar_reflections", parameters_.local_rays != LocalRays::traced);
-  program.set("planar_refractions", parameters_.local_rays == LocalRays::planar);
-  program.set("show", static_cast<int>(parameters_.show));
   program.set("step_counts", glm::vec4(parameters_.view_steps, parameters_.reflected_steps, parameters_.refracted_steps,
                                        parameters_.light_steps));
   program.set("refinements", glm::vec4(parameters_.view_refinements, parameters_.reflected_refinements,
@@ -110,9 +113,14 @@ void ReliefPass::set_uniforms(const Scene& scene, const Instance& instance, cons
   }
   if (!relief.translucent) return;
   program.set("medium_phong", glm::vec2(relief.translucent->specular, relief.translucent->exponent));
+  // From where on Phong's term is 1e-4, which no picture shows.
+  const double weight = static_cast<double>(relief.translucent->specular);
+  program.set("least_shine",
+              weight < 1e-4
+                  ? 2.0F
+                  : static_cast<float>(std::pow(1e-4 / weight, 1 / static_cast<double>(relief.translucent->exponent))));
   program.set("intensification", relief.intensification);
-  program.set("outside_index", relief.outside_index);
-  program.set("index", relief.index);
+  program.set("index_ratios", glm::vec2(relief.outside_index / relief.index, relief.index / relief.outside_index));
   program.set("absorption", relief.absorption);
 }
 
@@ -196,41 +204,54 @@ SearchErrors ReliefPass::compare_searches(const Scene& scene, const Camera& came
 
 ReliefPass::FetchCounts ReliefPass::count_fetches(const Scene& scene, const Camera& camera,
                                                   const ForwardPass& forward) {
-  bare_ = gl::Program("bare relief", {kVertex, "algorithms/translucent_relief/bench/bare_relief.frag.glsl"},
-                      forward.environment_defines());
-  for (gl::Texture& counts : fetch_counts_)
-    counts = gl::Texture::make_2d("fetch counts", gl::Format::rgba32f, camera.width, camera.height);
+  // As bench/recorded_searches.glsl lays them out.
+  const int lights = static_cast<int>(scene.lights.size());
+  const int groups = 2 + 3 * lights * ((4 + parameters_.boundaries) / 4);
+  const auto make_records = [&](gl::Format format, int layers) {
+    return gl::Texture::make_2d_array("searches", format, camera.width, camera.height, layers);
+  };
+  gl::Texture words = make_records(gl::Format::r32ui, 4 * groups);
+  words.clear({0, 0, 0, 0});
+  const gl::Texture counts = gl::Texture::make_2d("fetch counts", gl::Format::r32f, camera.width, camera.height);
   const gl::Texture depth = gl::Texture::make_2d("count depth", gl::Format::depth32f, camera.width, camera.height);
-  const gl::Framebuffer framebuffer("fetch counts", {&fetch_counts_[0], &fetch_counts_[1], &fetch_counts_[2]}, &depth);
+  const gl::Framebuffer framebuffer("fetch counts", {&counts}, &depth);
   framebuffer.bind();
-  for (int attachment = 0; attachment < 3; ++attachment)
-    framebuffer.clear_color(attachment, {0, 0, 0, 0});
+  framebuffer.clear_color(0, {0, 0, 0, 0});
   framebuffer.clear_depth();
+  bare_.clear();
+  bare_.resize(scene.reliefs.size());
   for (const Instance& instance : scene.instances) {
     if (instance.relief < 0) continue;
     gl::Defines wanted = defines(scene.reliefs[static_cast<std::size_t>(instance.relief)], forward);
+    bare_[static_cast<std::size_t>(instance.relief)] = gl::Program("bare relief", {kVertex, kBare}, wanted);
     wanted.emplace_back("COUNT", "1");
-    draw_mesh(scene, instance, camera, forward, gl::Program("relief counts", {kVertex, kFragment}, wanted));
+    const gl::Program program("relief counts", {kVertex, kFragment}, wanted);
+    words.bind_image(kRecordsImage, GL_WRITE_ONLY);
+    draw_mesh(scene, instance, camera, forward, program);
   }
-  FetchCounts counts;
-  std::vector<float> sums(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0.0F);
-  for (const gl::Texture& texture : fetch_counts_) {
-    const std::vector<float> texels = texture.read();
-    for (std::size_t i = 0; i < texels.size(); ++i)
-      sums[i / 4] += texels[i];
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  records_ = make_records(gl::Format::rgba32f, groups);
+  const std::vector<float> layers = words.read();
+  const std::size_t pixels = layers.size() / static_cast<std::size_t>(4 * groups);
+  std::vector<float> group(4 * pixels);
+  for (int layer = 0; layer < groups; ++layer) {
+    for (std::size_t i = 0; i < group.size(); ++i)
+      group[i] = layers[(4 * static_cast<std::size_t>(layer) + i % 4) * pixels + i / 4];
+    records_.upload_layer(layer, group);
   }
-  for (const float sum : sums) {
-    counts.pixels += sum > 0 ? 1 : 0;
-    counts.fetches += static_cast<double>(sum);
+  FetchCounts sums;
+  for (const float count : counts.read()) {
+    sums.pixels += count > 0 ? 1 : 0;
+    sums.fetches += static_cast<double>(count);
   }
-  return counts;
+  return sums;
 }
 
 void ReliefPass::draw_bare(const Scene& scene, const Camera& camera, const ForwardPass& forward) const {
-  for (std::size_t i = 0; i < fetch_counts_.size(); ++i)
-    fetch_counts_[i].bind(kFirstCountUnit + static_cast<GLuint>(i));
+  records_.bind(kRecordsUnit);
   for (const Instance& instance : scene.instances) {
-    if (instance.relief >= 0) draw_mesh(scene, instance, camera, forward, bare_);
+    if (instance.relief >= 0)
+      draw_mesh(scene, instance, camera, forward, bare_[static_cast<std::size_t>(instance.relief)]);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,7 +27,8 @@ class ReliefPass {
   void draw(const Scene&, const Camera&, const ForwardPass&, const Target&);
   std::string reload_shaders();
 
-  /// For `pellucid bench`: counts the fetches of draw() and keeps the counts for draw_bare(), which makes as many.
+  /// For `pellucid bench`: counts the fetches of draw() and writes down each pixel's searches for draw_bare(), which
+  /// makes the same. Where fragments lie over each other, those of the one that is drawn last.
   struct FetchCounts {
     double pixels = 0, fetches = 0;
   };
@@ -53,8 +53,8 @@ class ReliefPass {
   Animation animation_;
   bool objects_ = false;  // some opaque objects may be refracted
   gl::Texture object_color_, object_depth_;
-  gl::Program bare_;
-  std::array<gl::Texture, 3> fetch_counts_;
+  std::vector<gl::Program> bare_;  // by relief
+  gl::Texture records_;
   std::map<gl::Defines, gl::Program> programs_;
   std::vector<const gl::Program*> program_of_;  // by relief
 };

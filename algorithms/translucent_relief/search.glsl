@@ -1,6 +1,6 @@
 // Where a ray meets a height field (Timonen, Sec. 2 and 3). C++ twin: algorithms/translucent_relief/search.hpp.
-// The includer defines `float above(int layer, vec3 at)`: the height over the layer [m] of a point at `xy` of the layers' maps
-// and the height `z` [m].
+// The includer defines `vec2 units_of(int layer)` and `float height_at(int layer, vec2 at)`: at a place of its map the layer's
+// height [m] is units.x + units.y * height_at().
 
 // In the frame of a surface point: z along its normal, metres.
 struct Ray {
@@ -26,10 +26,14 @@ mat3 surface_frame(vec3 n, vec3 over_u, vec3 over_v, out vec2 metres) {
 vec2 uv_at(Ray ray, float t) { return ray.uv + (ray.origin.xy + t * ray.direction.xy) * ray.uv_per_metre; }
 float z_at(Ray ray, float t) { return ray.origin.z + t * ray.direction.z; }
 
-// The ray's point as above() takes it, with maps that repeat `tiles` times over the mesh's texture.
-vec3 over_map(Ray ray, vec2 tiles, float t) { return vec3(tiles * uv_at(ray, t), z_at(ray, t)); }
+vec2 units_of(int layer);
+float height_at(int layer, vec2 at);
 
-float above(int layer, vec3 at);
+// How far the ray's point is over the layer [m], whose map repeats `tiles` times over the mesh's texture.
+float above(int layer, Ray ray, vec2 tiles, float t) {
+  vec2 units = units_of(layer);
+  return z_at(ray, t) - units.x - units.y * height_at(layer, tiles * uv_at(ray, t));
+}
 
 // The part of the ray that lies in a slab of heights and, where rays do not leave the mesh's texture, in [0, 1]² of it;
 // empty where x > y. `from`: where the ray begins.
@@ -52,38 +56,51 @@ vec2 clip_ray(Ray ray, float low, float high, bool cut, float from) {
 float linear_crossing(int layer, Ray ray, vec2 tiles, vec2 range, float side, float bias, int steps, int refinements,
                       inout float taken) {
   if (!(range.x < range.y)) return -1.0;
-  float last = float(steps), stride = (range.y - range.x) / last;
-  vec3 first = over_map(ray, tiles, range.x);
-  vec3 by = stride * vec3(tiles * ray.uv_per_metre * ray.direction.xy, ray.direction.z);
-  float start = side * above(layer, first), k = 0.0;  // the height after k steps
-  vec4 heights = vec4(0.0);                           // and after the four that follow
-  for (; k < last; k += 4.0) {
-    vec3 at = first + k * by;
-    heights = side * vec4(above(layer, at + by), above(layer, at + 2.0 * by), above(layer, at + 3.0 * by),
-                          above(layer, at + 4.0 * by));
-    if (min(min(heights.x, heights.y), min(heights.z, heights.w)) < -bias) break;
-    start = heights.w;
-  }
-  taken += 1.0 + min(k + 4.0, 4.0 * ceil(0.25 * last));
-  bvec4 below = lessThan(heights, vec4(-bias));
+  float stride = (range.y - range.x) / float(steps), end = range.y - 0.5 * stride;  // `end`: after the last but one step
+  // At t the ray is z + t * rise − scale * height_at(origin + t * speed) over the layer. Loops are kept short, since
+  // llvmpipe's compiler leaves in them all that stands in them.
+  vec2 units = units_of(layer);
+  vec2 origin = tiles * uv_at(ray, 0.0), speed = tiles * ray.uv_per_metre * ray.direction.xy;
+  float z = side * (ray.origin.z - units.x), rise = side * ray.direction.z, scale = side * units.y;
+  vec2 by1 = stride * speed, by2 = 2.0 * by1, by3 = 3.0 * by1, by4 = 4.0 * by1;
+  vec4 climb = stride * rise * vec4(1.0, 2.0, 3.0, 4.0);
+  float t = range.x, start = z + t * rise - scale * height_at(layer, origin + t * speed);  // the height at t
+  vec4 heights;                                                                            // and after the next four steps
+  bvec4 below;
+  bool found;
+  taken += 1.0;
+  do {
+    vec2 at = origin + t * speed;
+    heights = z + t * rise + climb -
+              scale * vec4(height_at(layer, at + by1), height_at(layer, at + by2), height_at(layer, at + by3),
+                           height_at(layer, at + by4));
+    below = lessThan(heights, vec4(-bias));
+    found = any(below);
+    start = found ? start : heights.w;
+    t += found ? 0.0 : 4.0 * stride;
+    taken += 4.0;
+  } while (!found && t < end);
   // How many of the four are before the one that is below, and the heights on both sides of it.
   vec3 bracket = below.x ? vec3(0.0, start, heights.x)
                  : below.y ? vec3(1.0, heights.xy)
                  : below.z ? vec3(2.0, heights.yz)
                            : vec3(3.0, heights.zw);
-  float before = k + bracket.x, after = before + 1.0;
-  if (after > last) return -1.0;
+  float before = t + bracket.x * stride, after = before + stride;
+  if (!found || before > end) return -1.0;
   float height_before = max(bracket.y, 0.0), height_after = bracket.z;
-  for (int i = 0; i < refinements; ++i) {
-    float middle = 0.5 * (before + after);
-    float height = side * above(layer, first + middle * by);
-    bool beyond = height < 0.0;
-    after = beyond ? middle : after;
-    height_after = beyond ? height : height_after;
-    before = beyond ? before : middle;
-    height_before = beyond ? height_before : height;
+  int i = 0;
+  if (i < refinements) {
+    do {
+      float middle = 0.5 * (before + after);
+      float height = z + middle * rise - scale * height_at(layer, origin + middle * speed);
+      bool beyond = height < 0.0;
+      after = beyond ? middle : after;
+      height_after = beyond ? height : height_after;
+      before = beyond ? before : middle;
+      height_before = beyond ? height_before : height;
+    } while (++i < refinements);
   }
   taken += float(refinements);
   float share = clamp(height_before / (height_before - height_after), 0.0, 1.0);
-  return range.x + stride * (before + (after - before) * share);
+  return before + (after - before) * share;
 }

@@ -77,6 +77,7 @@ struct Parameters {
     visit(PARAM(local_rays), {.cite = "Sec. 3.2",
                               .doc = "how reflected and refracted rays meet the solid: traced, or, reflected ones or "
                                      "both, on a plane at its mean height",
+                              .when = Change::program,
                               .choices = "traced|planar_reflections|planar"});
     visit(PARAM(view_steps), {.range = kSteps, .cite = "Sec. 2", .doc = "linear search's steps along view rays"});
     visit(PARAM(view_refinements),
@@ -145,6 +146,7 @@ struct Parameters {
     visit(PARAM(show), {.cite = "Fig. 7; beyond the paper",
                         .doc = "the picture; reflections sampled from the surface in red, from the environment in "
                                "blue; the first light's occlusion of the solid; heights asked for over the steps",
+                        .when = Change::program,
                         .choices = "radiance|reflections|occlusion|steps"});
   }
 };

@@ -25,7 +25,8 @@ layout(binding = 5) uniform sampler2D cones;
 
 const float kLow = -0.3, kRange = 0.3;
 
-float above(int layer, vec3 at) { return at.z - kLow - kRange * textureLod(heights, at.xy, 0.0).r; }
+vec2 units_of(int layer) { return vec2(kLow, kRange); }
+float height_at(int layer, vec2 at) { return textureLod(heights, at, 0.0).r; }
 vec2 extremes(int layer, ivec2 cell, int level) {
   ivec2 size = max(textureSize(heights, 0) >> level, ivec2(1));
   return kLow + kRange * texelFetch(pyramid, cell & (size - 1), level).rg;

@@ -198,6 +198,27 @@ TEST_F(Bench, CountsTheFetchesOfTheGeocubesSearches) {
                       {"fog_ball", "no dielectric"}));
 }
 
+TEST_F(Bench, CountsTheFetchesOfAReliefsSearches) {
+  const auto measured_relief = [](const Words& more) {
+    Words words{"bench", "translucent_relief", "--size", "64x48", "--frames", "8", "--no-reference", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = pellucid(words);
+    EXPECT_TRUE(succeeded(outcome));
+    return json::parse(outcome.out);
+  };
+  // The height that the ray begins at, four steps, a normal and a colour where it meets the solid; then a halving.
+  Words bare_solid{"-s", "translucency=false", "-s", "occlusion=false",
+                   "-s", "view_steps=4",       "-s", "view_refinements=0"};
+  EXPECT_NEAR(measured_relief(bare_solid).at("fetches_per_blend").get<double>(), 7, 0.1);
+  bare_solid.back() = "view_refinements=1";
+  EXPECT_NEAR(measured_relief(bare_solid).at("fetches_per_blend").get<double>(), 8, 0.1);
+  // A bare shader that lost the searches would take a tenth of the time.
+  const json all = measured_relief({});
+  EXPECT_GT(all.at("fetches_per_blend").get<double>(), 150);
+  EXPECT_GT(all.at("ratio").at("median").get<double>(), 0.6);
+  EXPECT_LT(all.at("ratio").at("median").get<double>(), 4);
+}
+
 TEST_F(Bench, RefusesWhatItCannotTime) {
   EXPECT_TRUE(refused(pellucid({"bench", "sampling_hull"}), 2, {"sampling_hull", "did you mean 'sampling_hulls'"}));
   EXPECT_TRUE(refused(pellucid({"bench", "volume_slices"}), 2, {"volume_slices", "sampling_hulls"}));
