@@ -120,13 +120,14 @@ TEST_F(Window, IsChangedByTheKeyboardAlone) {
   ViewerWindow window({fog_, "-t", "sampling_hulls", "--size", "96x72"}, folder_);
   window.wait_picture();
   // Every section open, so that every widget can be seen.
-  for (const char* folded : {"headline frame", "headline shadow", "headline Compare",
-                             "headline Live figures and sweeps", "headline Display", "headline Out"}) {
+  for (const char* folded :
+       {"headline frame", "headline shadow", "headline Compare", "headline Live figures and sweeps", "headline Display",
+        "headline Out", "headline Numbered frames"}) {
     window.tab_to(folded);
     window.key("Right");
   }
   window.wait("the last section",
-              [](const json& e) { return e.at("event") == "places" && e.at("widgets").contains("Keep this"); });
+              [](const json& e) { return e.at("event") == "places" && e.at("widgets").contains("Render frames"); });
   std::set<std::string> expected;
   for (const std::string& id : window.widgets())
     if (!id.starts_with("row ") && !id.starts_with("section ")) expected.insert(id);
@@ -252,6 +253,26 @@ TEST_F(Window, SavesTheHeadlessPictureAndOpensItAgain) {
   const json recipe = json::parse(saved.attributes.at("pellucid.recipe"));
   EXPECT_EQ(picture.at("recipe").at("view"), recipe.at("view"));
   EXPECT_EQ(picture.at("recipe").at("parameters"), recipe.at("parameters"));
+}
+
+TEST_F(Window, KeepsNamedSetUps) {
+  ViewerWindow window({fog_, "-t", "volume_slices", "-s", "slices=5", "--size", "32x24"}, folder_);
+  window.wait_picture();
+  window.keys("shift+Tab", 2);
+  window.key("Right");
+  window.wait_until("the open section", [&] { return window.shows("bookmark name"); });
+  window.keys("Tab", 6);
+  window.type("mist");
+  window.keys("Tab", 1);
+  window.key("Return");
+  EXPECT_EQ(window.wait("kept", [](const json& e) { return e.at("event") == "bookmark"; }).at("name"), "mist");
+  window.screenshot("bookmarks.png");
+  const auto kept = [&] { return read_file(folder_ / "config" / "pellucid" / "bookmarks.json"); };
+  EXPECT_NE(kept().find("mist"), std::string::npos);
+  window.key("Tab");
+  window.key("Return");
+  window.wait("removed", [](const json& e) { return e.at("event") == "bookmark removed"; });
+  EXPECT_EQ(kept().find("mist"), std::string::npos);
 }
 
 TEST_F(Window, RendersNumberedFramesAlongAWay) {

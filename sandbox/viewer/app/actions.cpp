@@ -79,7 +79,7 @@ void App::make_actions() {
   add(GLFW_KEY_S, ctrl | GLFW_MOD_ALT, "Ctrl+Alt+S", "save the chosen region, or what is seen, as EXR",
       [this] { save_crop(); });
   add(GLFW_KEY_C, 0, "C", "copy as a command line", [this] { copy_command(); });
-  add(GLFW_KEY_M, 0, "M", "next way to compare: A, side by side, wipe, blink, difference", [this] { next_mode(); });
+  add(GLFW_KEY_M, 0, "M", "next way to compare: side by side, wipe, blink …", [this] { next_mode(); });
   add(GLFW_KEY_B, 0, "B", "the panel changes the other side", [this] {
     if (second_.against() != Against::technique) return say("compare with a technique first", true);
     panel_.set_side(panel_.side() == Side::a ? Side::b : Side::a);
@@ -105,7 +105,7 @@ void App::make_actions() {
     }
   });
   add(GLFW_KEY_K, 0, "K", "keep this set-up as a bookmark", [this] { keep_bookmark(); });
-  add(GLFW_KEY_Y, 0, "Y", "this camera is the next stop of the way for numbered frames", [this] { add_stop(); });
+  add(GLFW_KEY_Y, 0, "Y", "this camera is the next stop of a way for frames", [this] { add_stop(); });
   add(GLFW_KEY_Y, shift, "Shift+Y", "forget that way", [this] {
     kept_.way.clear();
     say("numbered frames: the camera stays where it is");
@@ -127,7 +127,7 @@ void App::make_actions() {
            {"drag", "orbit"},
            {"Shift+drag, middle", "pan"},
            {"right drag, wheel", "dolly"},
-           {"Alt+drag", "move the light or object whose scene parameter had the focus last"},
+           {"Alt+drag", "move the light or object of the last scene parameter"},
            {"Ctrl+drag", "choose a region for figures and a histogram"},
            {"Ctrl+wheel", "zoom the picture at the pointer"},
            {"Ctrl+right drag", "move the zoomed picture"}}) {

@@ -90,6 +90,7 @@ class App {
   void add_axis();
   void go_to_bookmark(const std::string&);
   void keep_bookmark();
+  void remove_bookmark();
   void copy_picture(const std::string& extension);
   // frame_parts.cpp
   PanelPart frames_part();
@@ -185,6 +186,8 @@ class App {
   Note* compare_note_ = nullptr;
   PushButton* side_button_ = nullptr;
   Choice* bookmark_choice_ = nullptr;
+  Field* bookmark_name_ = nullptr;
+  std::string bookmark_named_;  ///< as the field says
   Field *frames_field_ = nullptr, *fps_field_ = nullptr;
   Note* frames_note_ = nullptr;
 

@@ -109,20 +109,29 @@ PanelPart App::out_part() {
     auto* bookmark = new Choice(marks);
     bookmark->setId("bookmark");
     bookmark->set_hint("Set-ups that were kept; they survive the program.");
-    bookmark->current = bookmarks_.all().empty() ? "(none is kept)" : "(choose)";
-    for (const Bookmark& kept : bookmarks_.all())
-      bookmark->items.push_back(kept.name);
     bookmark->chosen = [this](const std::string& name) { guarded([&] { go_to_bookmark(name); }); };
     bookmark_choice_ = bookmark;
+    bookmark_name_ = new Field(new Bar(section->body(), "Name"));
+    bookmark_name_->setId("bookmark name");
+    bookmark_name_->set_hint(
+        "The bookmark to keep or to remove. Without a name it is called after its scene and technique.");
+    bookmark_name_->offer = [this](const std::string& name) {
+      bookmark_named_ = name;
+      return std::string();
+    };
     auto* keep = new Bar(section->body());
     button(keep, "Keep this", "Keeps scene, technique, view and all parameters as a bookmark (K).",
            [this] { guarded([&] { keep_bookmark(); }); });
+    button(keep, "Remove", "Removes the bookmark of that name.", [this] { guarded([&] { remove_bookmark(); }); });
   };
   part.refresh = [this] {
     bookmark_choice_->items.clear();
     for (const Bookmark& kept : bookmarks_.all())
       bookmark_choice_->items.push_back(kept.name);
-    bookmark_choice_->current = bookmarks_.all().empty() ? "(none is kept)" : "(choose)";
+    bookmark_choice_->current = bookmarks_.all().empty()                      ? "(none is kept)"
+                                : bookmarks_.find(bookmark_named_) != nullptr ? bookmark_named_
+                                                                              : "(choose)";
+    bookmark_name_->show(bookmark_named_);
   };
   return part;
 }

@@ -161,17 +161,34 @@ void App::add_axis() {
 }
 
 void App::go_to_bookmark(const std::string& name) {
-  if (const ViewState* state = bookmarks_.find(name)) workspace_.set_state(*state);
+  const ViewState* state = bookmarks_.find(name);
+  if (state == nullptr) return;
+  workspace_.set_state(*state);
+  bookmark_named_ = name;
 }
 
 void App::keep_bookmark() {
-  std::string name;
-  for (int number = 1; name.empty() || bookmarks_.find(name) != nullptr; ++number)
-    name = fmt::format("{} {} {}", std::filesystem::path(workspace_.scene()).stem().string(),
-                       workspace_.technique(Side::a), number);
+  const bool named = !bookmark_named_.empty();
+  const std::string base = named ? bookmark_named_
+                                 : fmt::format("{} {}", std::filesystem::path(workspace_.scene()).stem().string(),
+                                               workspace_.technique(Side::a));
+  // One that is kept already is never replaced.
+  std::string name = named ? base : base + " 1";
+  for (int number = 2; bookmarks_.find(name) != nullptr; ++number)
+    name = fmt::format("{} {}", base, number);
   bookmarks_.put(name, workspace_.state(Side::a));
   journal_.write({{"event", "bookmark"}, {"name", name}});
   say(fmt::format("kept as '{}'; it is in the section Out", name));
+}
+
+void App::remove_bookmark() {
+  const std::string name = bookmark_named_;
+  if (bookmarks_.find(name) == nullptr)
+    return say(name.empty() ? "choose a bookmark first" : fmt::format("no bookmark is called '{}'", name), true);
+  bookmarks_.remove(name);
+  bookmark_named_.clear();
+  journal_.write({{"event", "bookmark removed"}, {"name", name}});
+  say(fmt::format("removed '{}'", name));
 }
 
 void App::copy_picture(const std::string& extension) {
