@@ -72,6 +72,23 @@ void continue_around(std::vector<CausticNode>& nodes, int side) {
   }
 }
 
+// Whether over u, and over v, the layer's first and last nodes are the same places.
+glm::bvec2 closes(const std::vector<CausticNode>& nodes, int side, float tolerance) {
+  const auto both = [&](int step_along, int step_across) {
+    bool some = false;
+    for (int i = 0; i < side; ++i) {
+      const CausticNode& first = nodes[static_cast<std::size_t>(i * step_along)];
+      const CausticNode& last = nodes[static_cast<std::size_t>(i * step_along + (side - 1) * step_across)];
+      if (first.position.w == 0.0F && last.position.w == 0.0F) continue;
+      if (first.position.w != last.position.w) return false;
+      if (glm::distance(first.position, last.position) > tolerance) return false;
+      some = true;
+    }
+    return some;
+  };
+  return {both(side, 1), both(1, side)};
+}
+
 // All of the mesh in one plane, with positions that are linear in the texture's coordinates.
 bool is_affine(const Mesh& mesh, const Tangents& tangents) {
   float size = 0, off = 0;
@@ -100,10 +117,6 @@ CausticCharts caustic_charts(const Mesh& mesh, int side, const std::string& what
   charts.side = side;
   charts.layer_of_triangle.resize(mesh.triangles.size());
   charts.affine = is_affine(mesh, tangents);
-  if (charts.affine) {
-    charts.over_u = tangents.u[0];
-    charts.over_v = tangents.v[0];
-  }
   const ConnectedParts parts = connected_parts(mesh);
   std::vector<std::vector<std::size_t>> pieces(static_cast<std::size_t>(parts.count));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -147,8 +160,13 @@ CausticCharts caustic_charts(const Mesh& mesh, int side, const std::string& what
     for (const std::size_t i : triangles)
       charts.layer_of_triangle[i] = static_cast<std::uint32_t>(layer);
   }
-  for (std::vector<CausticNode>& layer : charts.layers)
+  float size = 0;
+  for (const glm::vec3& position : mesh.positions)
+    size = std::max(size, glm::distance(position, mesh.positions[0]));
+  for (std::vector<CausticNode>& layer : charts.layers) {
+    charts.closes.push_back(closes(layer, side, 1e-4F * size));
     continue_around(layer, side);
+  }
   return charts;
 }
 

@@ -23,8 +23,8 @@ struct CausticCharts {
   int side = 0;                                  ///< nodes along a side of the grid
   std::vector<std::vector<CausticNode>> layers;  ///< of nodes, row by row, first row at v = 0
   std::vector<std::uint32_t> layer_of_triangle;
-  bool affine = false;                   ///< a flat mesh whose texture is not bent: it may be continued beyond [0, 1]²
-  glm::vec3 over_u{0.0F}, over_v{0.0F};  ///< of an affine mesh
+  std::vector<glm::bvec2> closes;  ///< by layer: the mesh's first and last nodes over u, over v, are the same places
+  bool affine = false;             ///< a flat mesh whose texture is not bent
 };
 
 inline constexpr int kMostCausticLayers = 64;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "algorithms/raster/forward_pass.hpp"
 #include "algorithms/scene/scene.hpp"
@@ -24,15 +25,15 @@ class Caustics {
   std::string reload_shaders() { return program_ ? program_.reload() : std::string(); }
 
  private:
-  void lay_out(const Scene&, const Instance&, int side);
+  void lay_out(const Scene&, const Instance&, int side, bool repeat);
 
   gl::Program program_;
   gl::Defines defines_;
   gl::Texture maps_, nodes_;
   gl::Buffer layer_of_triangle_;
   gl::VertexArray grid_;
-  int charts_ = 0;
-  glm::vec3 over_u_{0.0F}, over_v_{0.0F};  // of a mesh that may be continued, else 0
+  std::vector<glm::bvec2> closes_;  // by layer of charts
+  bool repeat_ = false;
 };
 
 }  // namespace pellucid::translucent_relief

@@ -7,7 +7,9 @@
 #ifdef CAUSTICS
 // By light and layer of charts: power on a unit of the mesh's texture that falls on a plane at the solid's mean height.
 layout(binding = 13) uniform sampler2DArray caustic_maps;
-layout(std430, binding = 2) readonly buffer CausticLayers { uint caustic_layer[]; };  // by triangle
+// By triangle; over an edge where its map does not repeat, light is that of the edge.
+layout(std430, binding = 2) readonly buffer CausticLayers { uint caustic_layers[]; };
+const uint kCausticLayer = 0xffu, kRepeatsOverU = 0x100u, kRepeatsOverV = 0x200u;
 #endif
 in vec3 world_position;
 in vec3 world_normal;
@@ -114,7 +116,12 @@ vec3 gathered_irradiance(Ray frame, Place place, int i, vec3 to_light) {
   if (find_crossing(kSolid, ray, 0.0, 1.0, kLight) >= 0.0) return vec3(0.0);
   // The maps are of the plane at the solid's mean height: where the light through here comes to it.
   vec2 on_plane = uv_at(ray, (plane_height - p.z) / bent.z);
-  int layer = i * (textureSize(caustic_maps, 0).z / LIGHT_COUNT) + int(caustic_layer[gl_PrimitiveID]);
+  uint word = caustic_layers[gl_PrimitiveID];
+  vec2 half_texel = 0.5 / vec2(textureSize(caustic_maps, 0).xy);
+  vec2 inside = clamp(on_plane, half_texel, 1.0 - half_texel);
+  if ((word & kRepeatsOverU) == 0u) on_plane.x = inside.x;
+  if ((word & kRepeatsOverV) == 0u) on_plane.y = inside.y;
+  int layer = i * (textureSize(caustic_maps, 0).z / LIGHT_COUNT) + int(word & kCausticLayer);
   vec3 gathered = textureLod(caustic_maps, vec3(on_plane, float(layer)), 0.0).rgb * frame.uv_per_metre.x *
                   frame.uv_per_metre.y;
   return gathered * (dot(place.n, bent) / bent.z * object_visibility(i, entry, to_light));

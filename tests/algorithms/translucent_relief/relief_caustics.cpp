@@ -197,12 +197,49 @@ TEST(ReliefCaustics, AroundACylinder) {
   EXPECT_GT(std::max(gathered.at(kWidth / 2, kHeight / 2)[0], gathered.at(kWidth / 2, kHeight / 4)[0]), 0.3F);
 }
 
+// The same on a third of a cylinder, open on all sides, with the sun over its left edge: light that reaches the solid
+// there comes in over the edge, and the far edge, whose maps repeat here, has none to give.
+TEST(ReliefCaustics, OverAnOpenEdge) {
+  const auto make = [] {
+    Relief relief = level_layers();
+    relief.absorption = glm::vec3(0.0F);
+    relief.solid = flat_layer(-0.06F, -0.1F);
+    relief.solid.albedo = glm::vec3(static_cast<float>(kGroundAlbedo));
+    relief.translucent = flat_layer(-0.001F, -0.1F);
+    Scene scene = relief_scene(relief);
+    constexpr int kSteps = 24;
+    Mesh& mesh = scene.meshes[0] = {};
+    mesh.name = "third of a cylinder";
+    for (unsigned i = 0; i <= kSteps; ++i) {
+      const float share = static_cast<float>(i) / kSteps, angle = 2.1F * (share - 0.5F);
+      const glm::vec3 normal(std::sin(angle), 0.0F, std::cos(angle));
+      for (const float v : {0.0F, 1.0F}) {
+        mesh.positions.push_back(0.4F * normal + glm::vec3(0.0F, 0.6F * (v - 0.5F), 0.0F));
+        mesh.normals.push_back(normal);
+        mesh.uvs.emplace_back(share, v);
+      }
+      if (i == kSteps) break;
+      mesh.triangles.insert(mesh.triangles.end(), {{2 * i, 2 * i + 2, 2 * i + 3}, {2 * i, 2 * i + 3, 2 * i + 1}});
+    }
+    scene.lights[0].direction = glm::normalize(glm::vec3(1.0F, 0.0F, 0.12F));
+    scene.views[0] = {.name = "front", .eye = {-1.2F, 0.0F, 0.7F}, .target = {-0.3F, 0.0F, 0.2F}, .fov_y_deg = 25.0F};
+    return scene;
+  };
+  const Image gathered = frame(make(), gathering()), straight = frame(make(), gathering("false"));
+  // As above, by more of the depth over the radius. Light from the far edge would leave 0.58 of 0.74 away.
+  EXPECT_LT(difference(gathered, straight).mean, 8e-3);
+  EXPECT_LT(difference(gathered, straight).max, 0.05);
+  EXPECT_GT(gathered.at(kWidth / 2 - 4, kHeight / 2)[0], 0.5F);
+}
+
 TEST(ReliefCaustics, ChartsOfAMesh) {
   const auto charts = translucent_relief::caustic_charts(make_cylinder(0.4F, 0.6F, 24), 33, "it");
   ASSERT_EQ(charts.layers.size(), 3U) << "the side, and two discs over each other and over it";
   EXPECT_FALSE(charts.affine);
+  EXPECT_EQ(charts.closes[0], glm::bvec2(true, false)) << "around it";
   const auto plane = translucent_relief::caustic_charts(make_plane({2.0F, 1.0F}, 4), 17, "it");
   EXPECT_TRUE(plane.affine);
+  EXPECT_EQ(plane.closes[0], glm::bvec2(false, false));
   for (const auto& node : plane.layers[0])
     EXPECT_EQ(node.position.w, 1.0F);
   const auto words = [](const Mesh& mesh) -> std::string {
