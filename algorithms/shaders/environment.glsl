@@ -2,10 +2,13 @@
 #ifdef ENVIRONMENT_IMAGE
 layout(binding = 0) uniform sampler2D environment_map;  // lat-long, row 0 of the image at +y
 #endif
+// A shader that has these otherwise says so.
+#ifndef HAS_SKY
 uniform float radiance_scale;
 uniform vec3 zenith;
 uniform vec3 horizon;
 uniform vec3 ground;
+#endif
 
 vec3 environment_radiance(vec3 direction) {
   float y = clamp(direction.y, -1.0, 1.0);

@@ -1,12 +1,12 @@
 // A grid over the mesh's texture on the medium's surface, each node moved to where the light that it refracts meets the plane at
 // the solid's mean height.
+#define UNIFORM_SETTINGS
 #include "algorithms/shaders/lighting.glsl"
 #include "algorithms/translucent_relief/light_reaching.glsl"
 
 layout(binding = 14) uniform sampler2DArray nodes;  // as CausticNode (caustic_charts.hpp), four layers for each of charts
 uniform mat4 to_world;
 uniform mat3 normal_to_world;
-uniform float plane_height;  // the solid's mean
 uniform int grid;            // cells along a side of the maps
 uniform int light;
 uniform int chart;

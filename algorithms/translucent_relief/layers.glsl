@@ -1,24 +1,19 @@
 // The two layers' maps. Heights are metres along the mesh's normal, 0 at the mesh.
 #include "algorithms/translucent_relief/search.glsl"
+#include "algorithms/translucent_relief/settings.glsl"
 #include "algorithms/translucent_relief/cone_step.glsl"
 #include "algorithms/translucent_relief/max_mip.glsl"
 
 layout(binding = 3) uniform sampler2D solid_heights;
 layout(binding = 5) uniform sampler2D solid_normals;
 layout(binding = 7) uniform sampler2D solid_colors;
-uniform vec2 solid_range;  // the height of 0, and what is added at 1
-uniform bool solid_normal_map;
 #ifdef TWO_LAYERS
 layout(binding = 4) uniform sampler2D medium_heights;
 layout(binding = 6) uniform sampler2D medium_normals;
-uniform vec2 medium_range;
-uniform bool medium_normal_map;
 #endif
 // The search reads these: greatest and least heights by level, or cones.
 layout(binding = 8) uniform sampler2D solid_acceleration;
 layout(binding = 9) uniform sampler2D medium_acceleration;
-uniform vec2 tiling;
-uniform bool cut;
 
 const int kSolid = 0, kMedium = 1, kEither = 2;
 const int kView = 0, kReflected = 1, kRefracted = 2, kLight = 3;
@@ -149,7 +144,7 @@ vec2 bounds_of(int layer) {
 
 vec2 clip_to_layer(int layer, Ray ray, float from) {
   vec2 bounds = bounds_of(layer);
-  return clip_ray(ray, bounds.x, bounds.y, cut, from);
+  return clip_ray(ray, bounds.x, bounds.y, cut != 0, from);
 }
 
 // Unit normal from a texel: of a normal map, or of the slopes of heights.
@@ -158,12 +153,12 @@ vec3 normal_of(vec4 texel, bool normal_map, float range, vec2 uv_per_metre) {
 }
 vec3 solid_normal(vec2 at, vec2 uv_per_metre) {
   FETCHED(1);
-  return normal_of(textureLod(solid_normals, at, 0.0), solid_normal_map, solid_range.y, uv_per_metre);
+  return normal_of(textureLod(solid_normals, at, 0.0), solid_normal_map != 0, solid_range.y, uv_per_metre);
 }
 vec3 medium_normal(vec2 at, vec2 uv_per_metre) {
 #ifdef TWO_LAYERS
   FETCHED(1);
-  return normal_of(textureLod(medium_normals, at, 0.0), medium_normal_map, medium_range.y, uv_per_metre);
+  return normal_of(textureLod(medium_normals, at, 0.0), medium_normal_map != 0, medium_range.y, uv_per_metre);
 #else
   return vec3(0.0, 0.0, 1.0);
 #endif

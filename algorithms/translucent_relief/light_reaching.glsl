@@ -6,13 +6,6 @@
 #include "algorithms/translucent_relief/scattering.glsl"
 #endif
 
-uniform vec2 index_ratios;    // n1 / n2 and its inverse
-uniform vec3 absorption;      // [1/m]
-uniform vec4 step_counts;    // of view, reflected, refracted and light rays
-uniform vec4 refinements;  // whole numbers, both
-uniform float steps_at_normal;  // share of the steps that a ray along the normal takes
-uniform int boundaries;         // of the medium, that a light ray may pass
-
 vec4 taken = vec4(0.0);  // heights asked for, by kind of ray
 
 int steps_of(int kind, Ray ray) {

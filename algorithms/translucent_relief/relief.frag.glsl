@@ -1,4 +1,6 @@
 // Timonen, Sec. 3, Algorithm 1: a fragment of a mesh over a solid and a translucent layer.
+#define HAS_SKY
+#include "algorithms/translucent_relief/settings.glsl"
 #include "algorithms/shaders/environment.glsl"
 #include "algorithms/shaders/shadows.glsl"
 #include "algorithms/translucent_relief/light_reaching.glsl"
@@ -17,14 +19,6 @@ in vec3 world_over_u;
 in vec3 world_over_v;
 in vec3 tint;
 in vec2 mesh_uv;
-
-uniform vec3 eye;
-uniform vec3 solid_albedo;
-uniform vec2 solid_phong;   // specular, exponent
-uniform vec2 medium_phong;
-uniform float intensification;
-uniform float plane_height;  // of the flat solid that planar rays meet
-uniform float least_shine;  // cosine from which on the medium's highlight counts
 
 // SHOW, the parameter `show`, is compiled in.
 const int kShowRadiance = 0, kShowReflections = 1, kShowOcclusion = 2, kShowSteps = 3;
@@ -78,7 +72,7 @@ float meet_solid(Ray ray, bool reflection) {
   float t = -1.0;
   if (ray.direction.z < -1e-6) {
     t = max((plane_height - ray.origin.z) / ray.direction.z, 0.0);
-    if (t > clip_ray(ray, -1e9, 1e9, cut, 0.0).y) t = -1.0;
+    if (t > clip_ray(ray, -1e9, 1e9, cut != 0, 0.0).y) t = -1.0;
   }
   RECORDED(heights = 0u; record_search(t >= 0.0, vec2(0.0), vec2(0.0));)
   return t;

@@ -2,6 +2,7 @@
 // `pellucid bench translucent_relief`. Searches follow each other as in relief.frag.glsl, each in a loop of its own: a
 // processor that runs pixels in step repeats each search until the last of them is done.
 #include "algorithms/translucent_relief/bench/recorded_searches.glsl"
+#include "algorithms/translucent_relief/settings.glsl"
 #ifdef ENVIRONMENT_IMAGE
 layout(binding = 0) uniform sampler2D environment_map;
 #endif
@@ -14,9 +15,6 @@ layout(binding = 5) uniform sampler2D solid_normals;
 layout(binding = 6) uniform sampler2D medium_normals;
 layout(binding = 7) uniform sampler2D solid_colors;
 layout(binding = 14) uniform sampler2DArray records;  // groups of four words
-uniform vec2 tiling;
-uniform int boundaries;
-uniform vec4 refinements;
 
 layout(location = 0) out vec4 radiance;
 
