@@ -88,6 +88,10 @@ TEST_F(Window, IsChangedByTheMouse) {
       for (int c = 0; c < 3; ++c)
         worst = std::max(worst, std::abs(truth.at(column, row)[c] - screen.at(x + column, y + row)[c]));
   EXPECT_LE(worst, 1.01F / 255);  // the GPU's and the CPU's transform may round to neighbouring codes
+  // Around it lies the window's ground, up to the picture's edge.
+  for (const auto& [right, down] :
+       {std::pair{-1, 0}, {truth.width, truth.height - 1}, {0, -1}, {truth.width - 1, truth.height}})
+    EXPECT_NEAR(screen.at(x + right, y + down)[0], 0.11F, 1.01F / 255) << right << ", " << down;
 
   // Integer: the slider's right end.
   window.drag("hulls", 0.3, 0.99);

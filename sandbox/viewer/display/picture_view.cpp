@@ -23,6 +23,24 @@ void switch_off_tests() {
     glDisable(static_cast<GLenum>(test));
 }
 
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Where pixels of the picture lie within the region, in GL's order of rows.
+Rectangle picture_within(const Region& region, const Zoom& zoom, const gl::Texture& picture) {
+  const auto at = [&](float texel, float origin, int room) {
+    return std::clamp((texel - origin) * zoom.scale, 0.0F, static_cast<float>(room));
+  };
+  const auto low = [&](float origin, int room) { return static_cast<int>(std::floor(at(0, origin, room))); };
+  const auto high = [&](int size, float origin, int room) {
+    return static_cast<int>(std::ceil(at(static_cast<float>(size), origin, room)));
+  };
+  const int left = low(zoom.left, region.width), right = high(picture.width(), zoom.left, region.width);
+  const int top = low(zoom.top, region.height), bottom = high(picture.height(), zoom.top, region.height);
+  return {left, region.height - bottom, right - left, bottom - top};
+}
+
 // FLIP's own colours, so that all maps of the window share one scale.
 gl::Texture make_ramp() {
   constexpr int kColors = 256;
@@ -131,7 +149,15 @@ void PictureView::draw(const DisplaySettings& settings, const Region& region, co
   ramp_.bind(2);
   transform_->bind_luts();
   triangle_.bind();
+  if (settings.mode == CompareMode::a) {
+    // Around the picture there is nothing to transform.
+    displayed_framebuffer_.clear_color(0, {kGround.x, kGround.y, kGround.z, 1});
+    const Rectangle within = picture_within(region, zoom, a_);
+    glScissor(within.x, within.y, within.width, within.height);
+    glEnable(GL_SCISSOR_TEST);
+  }
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_SCISSOR_TEST);
   gl::check("draw", "picture");
 }
 
