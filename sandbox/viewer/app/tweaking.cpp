@@ -1,6 +1,7 @@
 #include "sandbox/viewer/app/tweaking.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Some states take minutes to prepare; a hand would not wait for them either.
+// Some states take minutes to prepare; a hand would not wait for them either. The state before, to which cancelling
+// goes back, may take as long where others use the machine: each time that it is cancelled too the patience doubles.
 constexpr double kLongest_s = 15;
 
 // Turns of the loop after the first picture: what the window makes once is there by then.
@@ -115,13 +117,15 @@ bool Tweaking::turn(Workspace& workspace) {
       return true;
     case Phase::running: {
       if (workspace.busy()) {
-        if (now - asked_s_ > kLongest_s) {
+        if (now - asked_s_ > kLongest_s * std::exp2(in_a_row_)) {
           workspace.cancel();
           ++cancelled_;
+          ++in_a_row_;
           asked_s_ = now;
         }
         return true;
       }
+      in_a_row_ = 0;
       if (!workspace.trouble(Side::b).empty() && compare) compare("");
       if (!workspace.trouble(Side::a).empty() && workspace.picture(Side::a)) {
         workspace.cancel();  // a refused state: back to the last one that was drawn

@@ -46,6 +46,7 @@ class Tweaking {
   std::shared_ptr<const Picture> old_;  ///< the last one of the run
   std::map<std::string, std::size_t> faults_;
   std::size_t failures_ = 0, cancelled_ = 0;
+  int in_a_row_ = 0;  ///< cancelled without a picture between
 };
 
 }  // namespace pellucid::sandbox
