@@ -118,6 +118,15 @@ TEST_F(Failing, ARenderersWarningIsToldOnce) {
   EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const json& e) { return is(e, "told"); }), 1);
 }
 
+TEST_F(Failing, AScenesWarningsAreTold) {
+  folder_.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nvn 0 0 1\nf 1//1 2//2 3//2\n");
+  const std::string part =
+      "[meshes.part]\nfile = \"part.obj\"\n[instances.part]\nmesh = \"part\"\nmaterial = \"grey\"\n";
+  const std::string scene = folder_.write("part.scene.toml", read_file(fog_) + "\n" + part).string();
+  ViewerWindow window({scene, "-t", "volume_slices", "--size", "32x24"}, folder_);
+  window.wait_status({"warning: ", "part.scene.toml", "have no normals"});
+}
+
 TEST_F(Failing, ALostContextIsToldInAnotherWindowWithTheSameState) {
   ViewerWindow window({fog_, "-t", "sampling_hulls", "-s", "hulls=3", "--size", "48x36", "--compare", "ray_marching",
                        "--lose-context-at", "3"},

@@ -247,7 +247,10 @@ void App::tell_notes() {
   if (notes.empty()) return;
   for (const std::string& words : notes)
     journal_.write({{"event", "told"}, {"words", words}});
-  say(fmt::format("{}", fmt::join(notes, "; ")), true);
+  // Several that come within moments are read together.
+  std::string words = fmt::format("{}", fmt::join(notes, "; "));
+  if (said_.starts_with("warning: ")) words = said_ + "; " + words;
+  say(words, true);
 }
 
 void App::follow_window() {

@@ -20,6 +20,7 @@
 #include "algorithms/progress.hpp"
 #include "algorithms/render_session.hpp"
 #include "algorithms/scene/files/tell.hpp"
+#include "algorithms/scene/loading_facts.hpp"
 #include "algorithms/scene/view_text.hpp"
 #include "gl/context.hpp"
 #include "gl/error.hpp"
@@ -176,6 +177,8 @@ class RenderWorker {
         if (counts_) objects_left_ = gl::growth(first_objects_, gl::count_live_objects());
       }
       Scene scene = load_scene(state.scene);
+      for (const std::string& warning : loading_facts(scene).warnings)
+        tell_line("warning: " + warning);
       if (!has_scene || !tell_facts) tell_scene(state.scene, scene);
       phase("compiling shaders");
       session_.emplace(std::move(scene), state.technique, state.view, state.width, state.height);
