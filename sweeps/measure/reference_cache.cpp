@@ -204,7 +204,7 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
   std::optional<double> shadow_pixels_share;
   if (settings.shadow_share > 0) {
     const Reference unshadowed = traced(file_key("unshadowed"), [&] {
-      return trace_unshadowed(load_again(point.scene, point.parameters), camera, surfaces(), options);
+      return trace_unshadowed(load_again(point.scene, point.parameters.table()), camera, surfaces(), options);
     });
     Image mask = shadow_mask(exact.image, unshadowed.image, settings.shadow_share);
     shadow_pixels_share = marked_share(mask);
@@ -214,7 +214,8 @@ std::shared_ptr<const CachedReference> ReferenceCache::get(RenderSession& sessio
   std::optional<ComparisonResult> to_exact;
   Image judge = std::move(exact.image);
   if (settings.method == ReferenceMethod::slices) {
-    Image slices = draw_slices(point.scene, point.parameters, camera.view.name, camera.width, camera.height, settings);
+    Image slices =
+        draw_slices(point.scene, point.parameters.table(), camera.view.name, camera.width, camera.height, settings);
     ComparisonOptions distance;
     distance.metrics = MetricSet(std::vector<std::string>{"flip", "rmse"});
     to_exact = Comparison(std::move(judge), nullptr, std::move(distance)).compare(slices);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <random>
+#include <stdexcept>
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
@@ -219,16 +220,18 @@ class Expander {
     }
     shared_.scene_hash = facts.content_hash;
     shared_.code_hash = code_hash(technique);
+    PointParameters::Table parameters;
     for (const ParameterInfo& i : table_) {
-      shared_.parameters[i.name] = i.default_value;
+      parameters[i.name] = i.default_value;
       plan_.parameters.try_emplace(i.name, i);
     }
     for (const Axis& axis : block.axes)
       shared_.assigned.push_back(axis.name);
     for (const FixedValue& fixed : block.fixed) {
-      shared_.parameters[fixed.name] = checked(info(fixed.name), fixed.value, technique);
+      parameters[fixed.name] = checked(info(fixed.name), fixed.value, technique);
       shared_.assigned.push_back(fixed.name);
     }
+    shared_.parameters = PointParameters(parameters);
 
     std::tie(identity_before_, identity_after_) = identity(shared_);
     identity_.clear();
@@ -328,7 +331,7 @@ class Expander {
     point.id = std::move(name);
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       const AxisValue& value = axes_[a].values[chosen_[a]];
-      point.parameters.find(block.axes[a].name)->second = value.value;
+      point.parameters.set(axes_[a].parameter, value.value);
       share(sharing, axes_[a].when, value.sharing);
     }
     sharing_.push_back(std::move(sharing));
@@ -394,6 +397,46 @@ class Expander {
 };
 
 }  // namespace
+
+PointParameters::PointParameters(const Table& table) {
+  Shared shared;
+  for (const auto& [name, value] : table) {
+    shared.names.push_back(name);
+    shared.values.push_back(value);
+  }
+  shared_ = std::make_shared<const Shared>(std::move(shared));
+}
+
+const Value& PointParameters::value(std::size_t place) const {
+  for (const auto& [own, value] : own_)  // as many as the spec has axes: a handful
+    if (own == place) return value;
+  return shared_->values[place];
+}
+
+const Value& PointParameters::at(std::string_view name) const {
+  const auto found = std::lower_bound(shared_->names.begin(), shared_->names.end(), name);
+  if (found == shared_->names.end() || *found != name) {
+    throw std::out_of_range(fmt::format("no parameter '{}'", name));
+  }
+  return value(static_cast<std::size_t>(found - shared_->names.begin()));
+}
+
+PointParameters::Table PointParameters::table() const {
+  Table all;
+  for (const auto& [name, own] : *this)
+    all.emplace(name, own);
+  return all;
+}
+
+void PointParameters::set(std::size_t place, Value value) {
+  assert(place < size());
+  for (auto& [own, old] : own_) {
+    if (own != place) continue;
+    old = std::move(value);
+    return;
+  }
+  own_.emplace_back(place, std::move(value));
+}
 
 Plan make_plan(const Spec& spec, const KnownNames& known_names) {
   return Expander(spec, known_names).expand();

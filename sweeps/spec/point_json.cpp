@@ -54,8 +54,10 @@ Point point_from_json(const json& in) {
     point.scene = in.at("scene");
     point.view = in.at("view");
     point.size = {in.at("width"), in.at("height")};
+    PointParameters::Table parameters;
     for (const auto& [name, value] : in.at("parameters").items())
-      point.parameters[name] = value_from_json(value);
+      parameters[name] = value_from_json(value);
+    point.parameters = PointParameters(parameters);
     point.metrics = in.at("metrics").get<std::vector<std::string>>();
     const json& timing = in.at("timing");
     point.timing = {timing.at("enabled"), timing.at("min_samples"), timing.at("max_samples"), timing.at("max_seconds"),

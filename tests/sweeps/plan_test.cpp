@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -164,6 +167,27 @@ TEST(Plan, APointInTwoBlocksIsMeasuredOnce) {
   EXPECT_EQ(plan.members[2].block, "q");
   EXPECT_EQ(plan.members[2].point, plan.members[1].point);
   EXPECT_EQ(plan.baseline, plan.members[2].point);
+}
+
+TEST(Plan, PointsShareTheirParametersAndKeepTheirOwnValues) {
+  const PointParameters::Table table{{"c", true}, {"a", std::int64_t{1}}, {"b", 2.0}};
+  const PointParameters shared(table);
+  PointParameters own = shared;
+  own.set(1, 3.0);
+  own.set(0, std::int64_t{4});
+  own.set(1, 5.0);
+  const auto text = [](const PointParameters& parameters) {
+    std::string all;
+    for (const auto& [name, value] : parameters)
+      all += name + "=" + to_text(value) + " ";
+    return all;
+  };
+  EXPECT_EQ(text(shared), "a=1 b=2 c=true ");
+  EXPECT_EQ(text(own), "a=4 b=5 c=true ");
+  EXPECT_EQ(std::get<double>(own.at("b")), 5.0);
+  EXPECT_EQ(std::get<double>(shared.at("b")), 2.0);
+  EXPECT_THROW(own.at("bb"), std::out_of_range);
+  EXPECT_THROW(own.at("d"), std::out_of_range);
 }
 
 TEST(Plan, RepeatCommandIsOneSoundLine) {

@@ -163,9 +163,11 @@ TEST_F(ReferenceCacheTest, ThePapersOwnReferenceIsManySlices) {
   // The slices drawn as a technique are their own reference.
   Point same = point("method='slices'\nslices=16\nformat='half'");
   same.technique = "volume_slices";
+  PointParameters::Table parameters = same.parameters.table();
   for (const char* name : {"hulls", "samples", "sample_offset", "coordinates", "filter_occlusion"})
-    same.parameters.erase(name);
-  same.parameters["slices"] = std::int64_t{16};
+    parameters.erase(name);
+  parameters["slices"] = std::int64_t{16};
+  same.parameters = PointParameters(parameters);
   EXPECT_EQ(measure(same).at("rmse"), 0.0);
 }
 
