@@ -11,7 +11,7 @@
 namespace pellucid {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 // The hierarchy without one instance, and that of it alone, each made when it is first asked for.
 struct Parts {
@@ -119,7 +119,7 @@ InterfaceHit InterfaceTracer::nearest(const glm::dvec3& origin, const glm::dvec3
 
 InterfaceHit InterfaceTracer::nearest_without(const glm::dvec3& origin, const glm::dvec3& direction,
                                               int without) const {
-  return state_->described(state_->without(without).intersect(origin, direction, 0.0, kInfinity), origin, direction);
+  return state_->described(state_->without(without).intersect(origin, direction, 0.0, kEndless), origin, direction);
 }
 
 InterfaceHit InterfaceTracer::next(const InterfaceHit& from, const glm::dvec3& direction, int without) const {
@@ -153,14 +153,14 @@ InnerPath InterfaceTracer::inside(int instance, const glm::dvec3& origin, const 
   InnerPath path;
   path.entering = direction;
   const InterfaceHit hit =
-      state_->described(state_->alone(instance).intersect(origin, direction, 0.0, kInfinity), origin, direction);
+      state_->described(state_->alone(instance).intersect(origin, direction, 0.0, kEndless), origin, direction);
   if (hit) state_->follow(path, hit, direction, reflections);
   return path;
 }
 
 double InterfaceTracer::diagonal_m(int instance) const {
   const Instance& object = state_->scene.instances[static_cast<std::size_t>(instance)];
-  glm::dvec3 low(kInfinity), high(-kInfinity);
+  glm::dvec3 low(kEndless), high(-kEndless);
   for (const glm::vec3& position : state_->scene.meshes[static_cast<std::size_t>(object.mesh)].positions) {
     const glm::dvec3 p(glm::dmat4(object.to_world) * glm::dvec4(glm::dvec3(position), 1.0));
     low = glm::min(low, p);

@@ -31,7 +31,7 @@ constexpr std::size_t kMemoryBytes = std::size_t{256} << 20;
 constexpr std::size_t kBytesPerPixel = 128;
 
 /// The part of SurfaceStatistics that a file keeps, besides its counts.
-constexpr std::pair<const char*, double SurfaceStatistics::*> kStatistics[] = {
+constexpr std::pair<const char*, double SurfaceStatistics::*> kSurfaceStatistics[] = {
     {"standard_error_max", &SurfaceStatistics::standard_error_max},
     {"standard_error_mean", &SurfaceStatistics::standard_error_mean},
     {"cut_weight_max", &SurfaceStatistics::cut_weight_max},
@@ -112,7 +112,7 @@ std::unique_ptr<Reference> ReferenceFiles::read(const std::string& key) const {
     reference->step_error_max = value("step_error_max");
     reference->step_error_mean = value("step_error_mean");
     reference->unconverged_share = value("unconverged_share");
-    for (const auto& [name, member] : kStatistics)
+    for (const auto& [name, member] : kSurfaceStatistics)
       reference->surfaces.*member = value(name);
     reference->surfaces.samples = static_cast<int>(value("samples"));
     reference->surfaces.rays = static_cast<std::uint64_t>(value("rays"));
@@ -139,7 +139,7 @@ void ReferenceFiles::write(const std::string& key, const Reference& reference) c
                     {"pellucid.step_error_mean", number(reference.step_error_mean)},
                     {"pellucid.unconverged_share", number(reference.unconverged_share)},
                     {"pellucid.commit", kCommit}};
-  for (const auto& [name, member] : kStatistics)
+  for (const auto& [name, member] : kSurfaceStatistics)
     out.attributes[fmt::format("pellucid.{}", name)] = number(reference.surfaces.*member);
   out.attributes["pellucid.samples"] = number(reference.surfaces.samples);
   out.attributes["pellucid.rays"] = number(static_cast<double>(reference.surfaces.rays));

@@ -23,7 +23,7 @@ namespace {
 using nlohmann::json;
 using Compare = RowCondition::Compare;
 
-std::optional<double> number(const std::string& text) {
+std::optional<double> number_in(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
@@ -52,7 +52,7 @@ bool compares(const T& a, Compare compare, const T& b) {
 bool meets(const json& row, const RowCondition& condition) {
   const auto found = row.find(condition.field);
   if (found == row.end() || found->is_null()) return condition.compare == Compare::unequal;
-  if (const auto wanted = number(condition.value); wanted && found->is_number())
+  if (const auto wanted = number_in(condition.value); wanted && found->is_number())
     return compares(found->get<double>(), condition.compare, *wanted);
   const std::string text = found->is_string() ? found->get<std::string>() : found->dump();
   return compares(text, condition.compare, condition.value);
@@ -67,7 +67,7 @@ void check_field(const std::string& field, const std::vector<std::string>& names
 
 /// A text never meets a condition on numbers; asked for by mistake, it would look as if there were no such rows.
 void check_value(const RowCondition& condition, const std::vector<json>& flat_rows) {
-  if (const auto wanted = number(condition.value); wanted && std::isfinite(*wanted)) return;
+  if (const auto wanted = number_in(condition.value); wanted && std::isfinite(*wanted)) return;
   bool any = false;
   for (const json& row : flat_rows) {
     const auto found = row.find(condition.field);

@@ -28,7 +28,7 @@ namespace {
 using nlohmann::json;
 using test::TemporaryFolder;
 
-const char* const kSpec = R"(
+const char* const kRealSpec = R"(
 name = "real"
 metrics = ["rmse", "psnr", "ssim", "flip"]
 [timing]
@@ -58,7 +58,7 @@ frame.format = "single"
 
 TEST(Worker, MeasuresWhatTheContractNames) {
   const TemporaryFolder folder;
-  const Spec spec = parse_spec(kSpec, "real.toml");
+  const Spec spec = parse_spec(kRealSpec, "real.toml");
   RunOptions options;
   options.worker = test::self({"real-worker"});
   options.quiet = true;
@@ -117,7 +117,7 @@ class MeasurerTest : public testing::Test {
   }
   gl::Context context;
   TemporaryFolder folder;
-  Plan plan = make_plan(parse_spec(kSpec, "real.toml"));
+  Plan plan = make_plan(parse_spec(kRealSpec, "real.toml"));
 };
 
 TEST_F(MeasurerTest, APointDoesNotDependOnThoseBefore) {

@@ -39,7 +39,7 @@ techniques = ["slices"]
 scenes = ["ball"]
 )";
 
-Spec parse(const std::string& overlay, Extent extent = Extent::preview) {
+Spec with_overlay(const std::string& overlay, Extent extent = Extent::preview) {
   return parse_spec(kPreviewSpec + overlay, "s.toml", FakeKnownNames(), extent);
 }
 
@@ -67,12 +67,12 @@ b.scenes = ["ball"]
 b.timing.enabled = false
 b.axes.samples = [1]
 )";
-  const Spec full = parse(overlay, Extent::full);
+  const Spec full = with_overlay(overlay, Extent::full);
   EXPECT_EQ(full.name, "curves");
   EXPECT_EQ(full.blocks.size(), 3U);
   EXPECT_EQ(full.blocks[0].axes[0].values.size(), 4U);
 
-  const Spec spec = parse(overlay);
+  const Spec spec = with_overlay(overlay);
   EXPECT_EQ(spec.name, "curves_preview");
   EXPECT_EQ(spec.title, "Curves, in a minute");
   ASSERT_EQ(spec.blocks.size(), 2U);
@@ -93,17 +93,17 @@ b.axes.samples = [1]
 }
 
 TEST(Preview, ScenesAreReplacedByListOrByStandIn) {
-  const Spec list = parse("[preview]\nscenes = ['ball']\n");
+  const Spec list = with_overlay("[preview]\nscenes = ['ball']\n");
   for (const RunBlock& block : list.blocks)
     EXPECT_EQ(block.scenes, std::vector<std::string>{"ball"});
-  const Spec stand_ins = parse("[preview]\nscenes = { forest = 'small_ball.toml' }\n");
+  const Spec stand_ins = with_overlay("[preview]\nscenes = { forest = 'small_ball.toml' }\n");
   EXPECT_EQ(stand_ins.blocks[0].scenes, std::vector<std::string>{"small_ball.toml"});
   EXPECT_EQ(stand_ins.blocks[1].scenes, (std::vector<std::string>{"small_ball.toml", "ball"}));
 }
 
 TEST(Preview, ComplaintsNameTheLineOfTheOverlay) {
   const auto error = [](const std::string& overlay, Extent extent = Extent::preview) {
-    return input_error([&] { parse(overlay, extent); });
+    return input_error([&] { with_overlay(overlay, extent); });
   };
   EXPECT_EQ(error(""), "s.toml:1:1: the spec has no [preview]");
   EXPECT_EQ(error("[preview]\nsize = ['1x1']\n"), "s.toml:26:1: unknown key 'size' in preview; did you mean 'sizes'?");

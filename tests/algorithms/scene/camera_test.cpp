@@ -5,14 +5,12 @@
 
 #include "algorithms/scene/scene.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
+#include "tests/expect_near.hpp"
 
 namespace pellucid {
 namespace {
 
-void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
-  EXPECT_LT(glm::length(a - b), tolerance)
-      << a.x << ", " << a.y << ", " << a.z << " against " << b.x << ", " << b.y << ", " << b.z;
-}
+using test::expect_near;
 
 TEST(Camera, LooksAlongMinusZInItsOwnSpace) {
   Camera camera;

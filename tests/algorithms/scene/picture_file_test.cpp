@@ -26,6 +26,7 @@
 
 #include "algorithms/scene/images/chromaticities.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
+#include "tests/expect_near.hpp"
 
 namespace pellucid {
 namespace {
@@ -215,10 +216,7 @@ const Chromaticities kXyz{{1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}};
 const Chromaticities kRec2020{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, {0.3127, 0.3290}};
 const Chromaticities kAcescg{{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 
-void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
-  for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(a[c], b[c], tolerance) << c;
-}
+using test::expect_near;
 
 TEST(Chromaticities, KnownMatrices) {
   // IEC 61966-2-1, amendment 1: XYZ to linear sRGB, to the digits that it gives.

@@ -14,6 +14,7 @@
 #include "algorithms/scene/images/image.hpp"
 #include "algorithms/scene/scene.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
+#include "tests/expect_near.hpp"
 
 namespace pellucid {
 namespace {
@@ -33,10 +34,7 @@ std::string with(std::string_view text) {
   return std::string(kView) + std::string(text);
 }
 
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5F) {
-  EXPECT_LT(glm::length(a - b), tolerance)
-      << a.x << ", " << a.y << ", " << a.z << " against " << b.x << ", " << b.y << ", " << b.z;
-}
+using test::expect_near;
 
 TEST_F(SceneLoading, TheSmallestSceneIsAView) {
   const Scene scene = load(kView, "small.toml");

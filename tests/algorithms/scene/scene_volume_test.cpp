@@ -11,6 +11,7 @@
 #include "algorithms/scene/scene.hpp"
 #include "algorithms/scene/shapes/procedural.hpp"
 #include "tests/algorithms/scene/folder_test.hpp"
+#include "tests/expect_near.hpp"
 
 namespace pellucid {
 namespace {
@@ -24,10 +25,7 @@ class SceneVolumes : public test::FolderTest {
   }
 };
 
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5F) {
-  EXPECT_LT(glm::length(a - b), tolerance)
-      << a.x << ", " << a.y << ", " << a.z << " against " << b.x << ", " << b.y << ", " << b.z;
-}
+using test::expect_near;
 
 /// World coordinates of a point of the box.
 glm::vec3 at(const Volume& volume, const glm::vec3& local) {
