@@ -150,8 +150,8 @@ CausticCharts caustic_charts(const Mesh& mesh, int side, const std::string& what
     }
     for (const auto& [i, at] : all) {
       const glm::uvec3& t = mesh.triangles[i];
-      const auto mixed = [&](const std::vector<glm::vec3>& values) {
-        return at.weights.x * values[t.x] + at.weights.y * values[t.y] + at.weights.z * values[t.z];
+      const auto mixed = [&t, &w = at.weights](const std::vector<glm::vec3>& values) {
+        return w.x * values[t.x] + w.y * values[t.y] + w.z * values[t.z];
       };
       charts.layers[layer][at.node] = {glm::vec4(mixed(mesh.positions), 1.0F), glm::vec4(mixed(mesh.normals), 0.0F),
                                        glm::vec4(mixed(tangents.u), 0.0F), glm::vec4(mixed(tangents.v), 0.0F)};
