@@ -20,11 +20,12 @@ struct Placement {
 // Boxes of any place, size and turn before, around and behind a camera.
 Placement random_placement(std::mt19937& random) {
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
-  glm::mat4 to_world = glm::translate(glm::mat4(1.0F), 2.0F * glm::vec3(unit(random), unit(random), unit(random)));
-  to_world = glm::rotate(to_world, 3.0F * unit(random), glm::normalize(glm::vec3(unit(random), 1.1F, unit(random))));
-  to_world = glm::scale(to_world, glm::vec3(1.5F) + glm::vec3(unit(random), unit(random), unit(random)));
+  glm::mat4 to_world = glm::translate(glm::mat4(1.0F), 2.0F * glm::vec3{unit(random), unit(random), unit(random)});
+  const float angle = 3.0F * unit(random);
+  to_world = glm::rotate(to_world, angle, glm::normalize(glm::vec3{unit(random), 1.1F, unit(random)}));
+  to_world = glm::scale(to_world, glm::vec3(1.5F) + glm::vec3{unit(random), unit(random), unit(random)});
   if (unit(random) > 0.5F) to_world[0] = -to_world[0];  // mirrored
-  return {to_world, glm::lookAt(3.0F * glm::vec3(unit(random), unit(random), unit(random)), glm::vec3(0.0F),
+  return {to_world, glm::lookAt(3.0F * glm::vec3{unit(random), unit(random), unit(random)}, glm::vec3(0.0F),
                                 glm::vec3(0.1F, 1.0F, 0.0F))};
 }
 

@@ -98,8 +98,8 @@ TEST(Optics, RefractionIsReversibleAndKeepsTheTangent) {
   std::uniform_real_distribution<double> index(0.3, 3.0);
   int total = 0;
   for (int i = 0; i < 4000; ++i) {
-    const glm::dvec3 n = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    glm::dvec3 along = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    const glm::dvec3 n = glm::normalize(glm::dvec3{normal(random), normal(random), normal(random)});
+    glm::dvec3 along = glm::normalize(glm::dvec3{normal(random), normal(random), normal(random)});
     if (glm::dot(along, n) > 0.0) along = -along;
     const double eta = index(random);
     const auto behind = refracted(along, n, eta);

@@ -57,7 +57,7 @@ std::vector<ShaderInput> shader_inputs() {
     q.i = std::floor(unit(random) * q.count);
     q.s = {unit(random), unit(random), unit(random)};
     q.sf = {unit(random), unit(random), unit(random)};
-    q.ray = glm::normalize(glm::vec3(unit(random), unit(random), unit(random)) - glm::vec3(0.5F));
+    q.ray = glm::normalize(glm::vec3{unit(random), unit(random), unit(random)} - glm::vec3(0.5F));
     q.opacity = k % 13 == 0 ? 1.0F : k % 17 == 0 ? 0.0F : unit(random);
     all.push_back(q);
   }

@@ -17,7 +17,7 @@ namespace {
 
 glm::dvec3 random_direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  return glm::normalize(glm::dvec3{normal(random), normal(random), normal(random)});
 }
 
 TEST(CubeFaces, DirectionAndTexelAreInverse) {

@@ -31,7 +31,7 @@ class Random {
   double between(double low, double high) { return low + (high - low) * unit(); }
   glm::dvec3 direction() {
     std::normal_distribution<double> normal;
-    return glm::normalize(glm::dvec3(normal(random_), normal(random_), normal(random_)));
+    return glm::normalize(glm::dvec3{normal(random_), normal(random_), normal(random_)});
   }
   glm::dvec3 in_box(double half) { return {between(-half, half), between(-half, half), between(-half, half)}; }
 

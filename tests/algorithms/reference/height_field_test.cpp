@@ -56,7 +56,7 @@ TEST(HeightField, AgreesWithTinyStepsOnRandomFields) {
     const double side = i % 3 == 0 ? -1.0 : 1.0;
     ReliefRay ray{
         {0, 0, side > 0 ? 0.0 : -0.31},
-        glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, -side * (0.05 + 0.5 * unit(random)))),
+        glm::normalize(glm::dvec3{unit(random) - 0.5, unit(random) - 0.5, -side * (0.05 + 0.5 * unit(random))}),
         {unit(random), unit(random)},
         {0.7, 1.3}};
     const double end = 0.1 + unit(random);

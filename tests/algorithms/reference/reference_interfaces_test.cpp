@@ -204,7 +204,7 @@ TEST(Interfaces, AnOpenMeshEndsThePath) {
 TEST(BentNormals, KeepRaysOnTheirSidesAndSoundNormalsAsTheyAre) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
-  const auto direction = [&] { return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))); };
+  const auto direction = [&] { return glm::normalize(glm::dvec3{normal(random), normal(random), normal(random)}); };
   int bent = 0;
   for (int k = 0; k < 20000; ++k) {
     const glm::dvec3 face = direction();

@@ -41,7 +41,7 @@ std::vector<SearchInput> search_inputs() {
     SearchInput q{};
     q.side = i % 3 == 0 ? -1.0F : 1.0F;
     q.origin = {0.0F, 0.0F, q.side > 0 ? 0.0F : -0.3F};
-    q.direction = glm::normalize(glm::vec3(unit(random) - 0.5F, unit(random) - 0.5F, -q.side * (0.05F + unit(random))));
+    q.direction = glm::normalize(glm::vec3{unit(random) - 0.5F, unit(random) - 0.5F, -q.side * (0.05F + unit(random))});
     q.uv = {unit(random), unit(random)};
     q.begin = 0.1F * unit(random);
     q.end = i % 17 == 0 ? q.begin : q.begin + unit(random);
