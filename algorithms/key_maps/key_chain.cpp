@@ -18,7 +18,7 @@ namespace pellucid::scattering {
 namespace {
 
 /// Raise it when what is computed or how it is written changes.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr float kBrightest = 60000;  // in half precision
 
 std::string key_of(const Environment& e, const KeyChainOptions& o) {
@@ -54,13 +54,16 @@ KeyChain key_chain(const Environment& environment, const KeyChainOptions& o, con
         fmt::format("face_size = {} is no power of two from {} to {}", o.face_size, kLeastFace, kMostFace));
   if (!(o.omega > 0 && o.omega <= 0.5)) throw InputError(fmt::format("omega = {} is out of range (0, 0.5]", o.omega));
   KeyChain chain;
-  chain.widths = KeyWidths(o.face_size, o.omega);
   CacheFile file;
   if (!folder.empty()) {
     const std::string key = key_of(environment, o);
     file = {folder / (key + ".keys"), "key maps", key};
     const auto unpack = [&](std::span<const std::byte> bytes) {
       ByteReader in(bytes);
+      std::vector<double> widths;
+      in.take(widths);
+      if (widths.size() < 2 || widths.size() > 32) throw InputError("it has another number of widths");
+      chain.widths = KeyWidths(std::move(widths));
       in.take(chain.scale);
       in.take(chain.mean);
       in.take(chain.filter_s);
@@ -78,6 +81,7 @@ KeyChain key_chain(const Environment& environment, const KeyChainOptions& o, con
   }
 
   const auto start = std::chrono::steady_clock::now();
+  chain.widths = KeyWidths(o.face_size, o.omega);
   const std::vector<KeyMap> maps = key_maps(environment, chain.widths, o.face_size, o.filter, progress);
   float brightest = 0;
   for (const KeyMap& map : maps)
@@ -94,6 +98,7 @@ KeyChain key_chain(const Environment& environment, const KeyChainOptions& o, con
   chain.filter_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!folder.empty()) {
     ByteWriter out;
+    out.add(chain.widths.widths());
     out.add(chain.scale);
     out.add(chain.mean);
     out.add(chain.filter_s);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 /// Which widths of a Gaussian the levels of a chain of filtered cube maps have, and between which of them a width lies:
@@ -20,7 +21,10 @@ class KeyWidths {
  public:
   /// `face_size` a power of two from 2 on.
   KeyWidths(int face_size, double omega);
+  /// Widths that were worked out before, by level from 0 on.
+  explicit KeyWidths(std::vector<double> widths) : widths_(std::move(widths)) {}
 
+  const std::vector<double>& widths() const { return widths_; }
   int levels() const { return static_cast<int>(widths_.size()) - 1; }  ///< filtered ones
   /// Standard deviation [rad]; 0 for level 0. A texel counts as π/(2n), as in the paper.
   double width(int level) const { return widths_[static_cast<std::size_t>(level)]; }

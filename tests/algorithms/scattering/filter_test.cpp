@@ -163,6 +163,7 @@ TEST(KeyChain, IsTheSameFromItsFile) {
   const Environment e = lamp(64);
   const KeyChainOptions options{.face_size = 64};
   const KeyChain made = key_chain(e, options, folder.path()), read = key_chain(e, options, folder.path());
+  EXPECT_EQ(read.widths.widths(), made.widths.widths());
   EXPECT_EQ(made.half_rgb, read.half_rgb);
   EXPECT_EQ(made.mean, read.mean);
   EXPECT_EQ(made.filter_s, read.filter_s);  // that of the first, so that the second did not filter
