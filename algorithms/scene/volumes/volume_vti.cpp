@@ -161,14 +161,23 @@ class MarkingReader : public vtkXMLImageDataReader {
   int ReadArrayValues(vtkXMLDataElement* element, vtkIdType first, vtkAbstractArray* array, vtkIdType from,
                       vtkIdType count, FieldType type) override {
     constexpr int kAllBits = 0xFF;  // NaN as float and as double
-    // An array of texts is refused by load_vti(); VTK 9.1 writes beyond its end where the file has more than it
-    // promises.
-    if (vtkDataArray::SafeDownCast(array) == nullptr) return 1;
+    if (is_of_texts(array)) return 1;
     if (count > 0)
       std::memset(array->GetVoidPointer(first), kAllBits,
                   static_cast<std::size_t>(count) * static_cast<std::size_t>(array->GetDataTypeSize()));
     return vtkXMLImageDataReader::ReadArrayValues(element, first, array, from, count, type);
   }
+  int ReadArrayForPoints(vtkXMLDataElement* element, vtkAbstractArray* array) override {
+    return is_of_texts(array) ? 1 : vtkXMLImageDataReader::ReadArrayForPoints(element, array);
+  }
+  int ReadArrayForCells(vtkXMLDataElement* element, vtkAbstractArray* array) override {
+    return is_of_texts(array) ? 1 : vtkXMLImageDataReader::ReadArrayForCells(element, array);
+  }
+
+ private:
+  /// An array of texts is refused by load_vti(); VTK 9.1 writes beyond its end where the file has more than it
+  /// promises, and reads beyond it where a piece is larger than the whole.
+  static bool is_of_texts(vtkAbstractArray* array) { return vtkDataArray::SafeDownCast(array) == nullptr; }
 };
 vtkStandardNewMacro(MarkingReader);
 
