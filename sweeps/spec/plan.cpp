@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <random>
-#include <stdexcept>
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
@@ -397,46 +396,6 @@ class Expander {
 };
 
 }  // namespace
-
-PointParameters::PointParameters(const Table& table) {
-  Shared shared;
-  for (const auto& [name, value] : table) {
-    shared.names.push_back(name);
-    shared.values.push_back(value);
-  }
-  shared_ = std::make_shared<const Shared>(std::move(shared));
-}
-
-const Value& PointParameters::value(std::size_t place) const {
-  for (const auto& [own, value] : own_)  // as many as the spec has axes: a handful
-    if (own == place) return value;
-  return shared_->values[place];
-}
-
-const Value& PointParameters::at(std::string_view name) const {
-  const auto found = std::lower_bound(shared_->names.begin(), shared_->names.end(), name);
-  if (found == shared_->names.end() || *found != name) {
-    throw std::out_of_range(fmt::format("no parameter '{}'", name));
-  }
-  return value(static_cast<std::size_t>(found - shared_->names.begin()));
-}
-
-PointParameters::Table PointParameters::table() const {
-  Table all;
-  for (const auto& [name, own] : *this)
-    all.emplace(name, own);
-  return all;
-}
-
-void PointParameters::set(std::size_t place, Value value) {
-  assert(place < size());
-  for (auto& [own, old] : own_) {
-    if (own != place) continue;
-    old = std::move(value);
-    return;
-  }
-  own_.emplace_back(place, std::move(value));
-}
 
 Plan make_plan(const Spec& spec, const KnownNames& known_names) {
   return Expander(spec, known_names).expand();
