@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nettle/base16.h>
 #include <nettle/sha2.h>
 
 #include "gl/error.hpp"
@@ -23,14 +24,8 @@ struct Sha256::State {
   std::string hex() {
     std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
     sha256_digest(&context, digest.size(), digest.data());  // also starts anew
-    // By hand, since a plan hashes 100,000 points: fmt::join takes as long as the hash itself.
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string text;
-    text.reserve(2 * digest.size());
-    for (const std::uint8_t byte : digest) {
-      text += kDigits[byte >> 4];
-      text += kDigits[byte & 15];
-    }
+    std::string text(BASE16_ENCODE_LENGTH(SHA256_DIGEST_SIZE), '\0');
+    base16_encode_update(text.data(), digest.size(), digest.data());
     return text;
   }
 };
