@@ -67,6 +67,8 @@ class Texture {
   static Texture make_cube(std::string label, Format, int size, int levels = 1);
 
   void upload(std::span<const float> texels, int level = 0);
+  /// As `upload`, texels in half precision already; of rg16f and rgba16f alone.
+  void upload_halves(std::span<const std::uint16_t> texels, int level = 0);
   void upload_layer(int layer, std::span<const float> texels, int level = 0);  ///< array layer or cube face
   std::vector<float> read(int level = 0) const;
   void generate_mipmaps();
@@ -92,6 +94,7 @@ class Texture {
 
  private:
   Texture(std::string label, Format, GLenum target, const std::array<int, 4>& width_height_depth_levels);
+  void upload_level(int level, GLenum component, const void* texels, std::size_t values);
   Handle<delete_texture> handle_;
   GLenum target_ = 0;
   Format format_ = Format::rgba8;

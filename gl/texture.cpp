@@ -94,7 +94,7 @@ Size size_of_level(GLenum target, int width, int height, int depth, int level) {
 }
 
 // GL pads rows to four bytes, which one channel of halves need not fill.
-bool read_as_halves(Format format) {
+bool moves_as_halves(Format format) {
   return format == Format::rg16f || format == Format::rgba16f;
 }
 
@@ -223,17 +223,25 @@ Texture& Texture::operator=(Texture&& other) noexcept {
   return *this;
 }
 
-void Texture::upload(std::span<const float> texels, int level) {
+void Texture::upload_level(int level, GLenum component, const void* texels, std::size_t values) {
   assert(id() != 0 && level >= 0 && level < levels_);
   const Size size = size_of_level(target_, width_, height_, depth_, level);
-  assert(texels.size() == size.texels() * static_cast<std::size_t>(channels(format_)) &&
-         "texels do not fill the level");
-  const FormatTraits& t = traits(format_);
+  assert(values == size.texels() * static_cast<std::size_t>(channels(format_)) && "texels do not fill the level");
+  const GLenum pixel = traits(format_).pixel;
   if (is_flat(target_))
-    glTextureSubImage2D(id(), level, 0, 0, size.width, size.height, t.pixel, t.component, texels.data());
+    glTextureSubImage2D(id(), level, 0, 0, size.width, size.height, pixel, component, texels);
   else
-    glTextureSubImage3D(id(), level, 0, 0, 0, size.width, size.height, size.depth, t.pixel, t.component, texels.data());
+    glTextureSubImage3D(id(), level, 0, 0, 0, size.width, size.height, size.depth, pixel, component, texels);
   check("upload", label_);
+}
+
+void Texture::upload(std::span<const float> texels, int level) {
+  upload_level(level, traits(format_).component, texels.data(), texels.size());
+}
+
+void Texture::upload_halves(std::span<const std::uint16_t> texels, int level) {
+  assert(moves_as_halves(format_));
+  upload_level(level, GL_HALF_FLOAT, texels.data(), texels.size());
 }
 
 void Texture::upload_layer(int layer, std::span<const float> texels, int level) {
@@ -260,7 +268,7 @@ std::vector<float> Texture::read(int level) const {
   const int layers = std::max(1, static_cast<int>(std::min(static_cast<std::size_t>(size.depth),
                                                            most_rows / static_cast<std::size_t>(size.height))));
   // Drivers convert slowly: halves are fetched as they are.
-  const bool half = read_as_halves(format_);
+  const bool half = moves_as_halves(format_);
   std::vector<std::uint16_t> halves;
   std::size_t at = 0;
   for (int z = 0; z < size.depth; z += layers) {

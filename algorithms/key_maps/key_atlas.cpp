@@ -1,6 +1,7 @@
 #include "algorithms/key_maps/key_atlas.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,31 +14,36 @@
 namespace pellucid::scattering {
 namespace {
 
+using HalfTexel = std::array<std::uint16_t, 4>;
+
+constexpr std::uint16_t kHalfOne = 0x3c00;
+
 /// One map of the chain; texels as gl/cube_faces.hpp numbers them.
 class HalfMap {
  public:
   HalfMap(const std::vector<std::uint16_t>& half_rgb, int size) : half_rgb_(half_rgb), size_(size) {}
 
-  // x and y from −1 to the size: a border's texel is the one beyond the edge, and a corner's the mean of the three that
-  // meet there.
-  glm::vec3 bordered(int face, int x, int y) const {
+  HalfTexel texel(int face, int x, int y) const {
+    const auto n = static_cast<std::size_t>(size_);
+    const std::uint16_t* rgb = &half_rgb_[3 * ((static_cast<std::size_t>(face) * n + static_cast<std::size_t>(y)) * n +
+                                               static_cast<std::size_t>(x))];
+    return {rgb[0], rgb[1], rgb[2], kHalfOne};
+  }
+
+  // x or y is −1 or the size: the texel beyond the edge, and at a corner the mean of the three that meet there.
+  HalfTexel border(int face, int x, int y) const {
     const int near_x = std::clamp(x, 0, size_ - 1), near_y = std::clamp(y, 0, size_ - 1);
-    if (x == near_x && y == near_y) return texel(face, x, y);
     if (x == near_x || y == near_y) return beyond_edge(face, x, y);
-    return (texel(face, near_x, near_y) + beyond_edge(face, x, near_y) + beyond_edge(face, near_x, y)) / 3.0F;
+    const HalfTexel a = texel(face, near_x, near_y), b = beyond_edge(face, x, near_y), c = beyond_edge(face, near_x, y);
+    HalfTexel mean{0, 0, 0, kHalfOne};
+    for (std::size_t i = 0; i < 3; ++i)
+      mean[i] =
+          glm::packHalf1x16((glm::unpackHalf1x16(a[i]) + glm::unpackHalf1x16(b[i]) + glm::unpackHalf1x16(c[i])) / 3.0F);
+    return mean;
   }
 
  private:
-  glm::vec3 texel(int face, int x, int y) const {
-    const auto n = static_cast<std::size_t>(size_);
-    const std::size_t at =
-        (static_cast<std::size_t>(face) * n + static_cast<std::size_t>(y)) * n + static_cast<std::size_t>(x);
-    glm::vec3 rgb;
-    for (std::size_t c = 0; c < 3; ++c)
-      rgb[static_cast<int>(c)] = glm::unpackHalf1x16(half_rgb_[3 * at + c]);
-    return rgb;
-  }
-  glm::vec3 beyond_edge(int face, int x, int y) const {
+  HalfTexel beyond_edge(int face, int x, int y) const {
     const auto place = [&](int i) { return (i + 0.5) / size_; };
     const gl::CubeTexel there = gl::cube_texel(gl::cube_direction({face, place(x), place(y)}));
     const auto cell = [&](double s) { return std::clamp(static_cast<int>(s * size_), 0, size_ - 1); };
@@ -63,7 +69,7 @@ KeyAtlas key_atlas(const KeyChain& chain) {
   atlas.face_rows = std::max(n + 2, column);
   atlas.width = n + 2 + n / 2 + 2;
   atlas.height = gl::kCubeFaces * atlas.face_rows;
-  atlas.rgba.assign(4 * static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height), 0.0F);
+  atlas.half_rgba.assign(4 * static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height), 0);
   for (int map = 0; map < maps; ++map) {
     const HalfMap texels(chain.half_rgb[static_cast<std::size_t>(map)], size_of(map));
     const int size = size_of(map);
@@ -71,12 +77,14 @@ KeyAtlas key_atlas(const KeyChain& chain) {
     for (int face = 0; face < gl::kCubeFaces; ++face) {
       for (int y = -1; y <= size; ++y) {
         const auto row = static_cast<std::size_t>(face * atlas.face_rows + top + 1 + y);
-        float* out = &atlas.rgba[4 * (row * static_cast<std::size_t>(atlas.width) + static_cast<std::size_t>(left))];
-        for (int x = -1; x <= size; ++x) {
-          const glm::vec3 rgb = texels.bordered(face, x, y);
-          for (const float value : {rgb.x, rgb.y, rgb.z, 1.0F})
-            *out++ = value;
-        }
+        std::uint16_t* out =
+            &atlas.half_rgba[4 * (row * static_cast<std::size_t>(atlas.width) + static_cast<std::size_t>(left))];
+        const auto put = [&](const HalfTexel& texel) { out = std::copy(texel.begin(), texel.end(), out); };
+        const bool beyond = y < 0 || y == size;
+        put(texels.border(face, -1, y));
+        for (int x = 0; x < size; ++x)
+          put(beyond ? texels.border(face, x, y) : texels.texel(face, x, y));
+        put(texels.border(face, size, y));
       }
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "algorithms/key_maps/key_chain.hpp"
@@ -17,7 +17,8 @@ struct KeyAtlas {
   int map_size = 0;  ///< n: texels along a face of the first map, a power of two; map l has n / 2^l
   int face_rows = 0;
   int width = 0, height = 0;
-  std::vector<float> rgba;  ///< as the chain keeps them, divided by its scale; 0 between the maps
+  /// Half precision as the chain keeps it, divided by its scale; 0 between the maps.
+  std::vector<std::uint16_t> half_rgba;
 };
 
 KeyAtlas key_atlas(const KeyChain&);

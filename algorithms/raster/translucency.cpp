@@ -76,7 +76,7 @@ void Translucency::refresh(const Scene& scene) {
                                    [](double share) { tell_progress("filtering the environment", share); });
   const KeyAtlas atlas = key_atlas(chain);
   chain_ = gl::Texture::make_2d("key maps", gl::Format::rgba16f, atlas.width, atlas.height);
-  chain_.upload(atlas.rgba);
+  chain_.upload_halves(atlas.half_rgba);
   chain_.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
   map_size_ = atlas.map_size;
   face_rows_ = atlas.face_rows;

@@ -76,7 +76,7 @@ TEST(KeyAtlas, IsLookedUpAsASeamlessCubeMap) {
   const KeyChain chain = noise_chain();
   const KeyAtlas atlas = key_atlas(chain);
   gl::Texture texture = gl::Texture::make_2d("atlas", gl::Format::rgba16f, atlas.width, atlas.height);
-  texture.upload(atlas.rgba);
+  texture.upload_halves(atlas.half_rgba);
   texture.set_sampling(gl::Filter::linear, gl::Wrap::clamp);
   texture.bind(11);
   for (const bool coloured : {false, true}) {

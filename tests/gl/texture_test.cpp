@@ -12,6 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include <glm/gtc/packing.hpp>
+#include <gtest/gtest.h>
+
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 #include "tests/gl/gl_fixture.hpp"
@@ -128,6 +131,22 @@ TEST_F(TextureTest, EveryHalfReadsBackAsItself) {
   const std::vector<float> got = texture.read();
   for (std::size_t i = 0; i < all.size(); ++i)
     ASSERT_EQ(std::bit_cast<std::uint32_t>(got[i]), std::bit_cast<std::uint32_t>(all[i])) << all[i];
+}
+
+TEST_F(TextureTest, TakesHalvesAsTheyAre) {
+  std::vector<std::uint16_t> halves(std::size_t{1} << 16);
+  std::vector<float> values(halves.size());
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    const auto half = static_cast<std::uint16_t>(i);
+    halves[i] = (half & 0x7c00U) == 0x7c00U ? std::uint16_t{0x3c00} : half;  // 1 in place of infinities and NaNs
+    values[i] = glm::unpackHalf1x16(halves[i]);
+  }
+  Texture flat = Texture::make_2d("flat", Format::rgba16f, 128, 128),
+          deep = Texture::make_3d("deep", Format::rg16f, 32, 32, 32);
+  flat.upload_halves(halves);
+  deep.upload_halves(halves);
+  EXPECT_EQ(flat.read(), values);
+  EXPECT_EQ(deep.read(), values);
 }
 
 TEST_F(TextureTest, RoundTrips3d) {
