@@ -206,9 +206,9 @@ std::string to_svg(const Chart& chart) {
   double widest = 0;
   for (const Tick& tick : y_layout.ticks)
     widest = std::max(widest, text_width(tick.label, kTickText));
-  frame.left += kAxisTitleRow + widest + 10;
   frame.top -= static_cast<double>(rows.size()) * kLegendRow + (rows.empty() ? 0 : 4);
   frame.bottom += kTickText.size_px + 12 + kAxisTitleRow;
+  frame.left += upright_width(frame, axis_title(chart.y)) + widest + 10;
   const AxisLayout x_layout = lay_out_axis(chart.x, x.low, x.high, std::max(4, static_cast<int>(frame.width() / 36)));
   check_frame(frame, chart.title);
 

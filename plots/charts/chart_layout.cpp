@@ -1,5 +1,7 @@
 #include "plots/charts/chart_layout.hpp"
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +19,10 @@ std::vector<std::string> title_lines(const std::string& title, double page_width
 
 std::vector<std::string> note_lines(const std::string& note, double page_width) {
   return wrap_text(note, kNoteText, page_width - 2 * kMargin);
+}
+
+std::vector<std::string> upright_lines(const Frame& frame, const std::string& title) {
+  return wrap_text(title, kAxisText, frame.height());
 }
 
 }  // namespace
@@ -42,6 +48,20 @@ void check_frame(const Frame& frame, const std::string& title) {
   }
 }
 
+double upright_width(const Frame& frame, const std::string& title) {
+  return kAxisTitleRow * std::max(1.0, static_cast<double>(upright_lines(frame, title).size()));
+}
+
+void paint_upright(Painter& painter, const Frame& frame, double x, const std::string& title) {
+  TextStyle upright = kAxisText;
+  upright.upright = true;
+  upright.vertical = Align::high;
+  for (const std::string& line : upright_lines(frame, title)) {
+    painter.text(x, (frame.bottom + frame.top) / 2, line, upright);
+    x += kAxisTitleRow;
+  }
+}
+
 void paint_frame_texts(Painter& painter, const Frame& frame, const std::string& title, const std::string& note,
                        const std::string& x_title, const std::string& y_title) {
   double y = frame.page_height - kMargin;
@@ -50,10 +70,7 @@ void paint_frame_texts(Painter& painter, const Frame& frame, const std::string& 
     y -= kTitleRow;
   }
   painter.text((frame.left + frame.right) / 2, frame.note_top + 8, x_title, kAxisText);
-  TextStyle upright = kAxisText;
-  upright.upright = true;
-  upright.vertical = Align::high;
-  painter.text(kMargin, (frame.bottom + frame.top) / 2, y_title, upright);
+  paint_upright(painter, frame, kMargin, y_title);
   y = frame.note_top - kNoteRow + 3;
   for (const std::string& line : note_lines(note, frame.page_width)) {
     painter.text(kMargin, y, line, kNoteText);

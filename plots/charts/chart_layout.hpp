@@ -31,6 +31,10 @@ struct Frame {
 Frame outer_frame(const std::string& title, const std::string& note, int width_px, int height_px);
 /// Throws InputError when title, legend and note leave too little room for the plot.
 void check_frame(const Frame&, const std::string& title);
+/// Width of an upright axis's title, which takes as many lines as the plot's height asks for.
+double upright_width(const Frame&, const std::string& title);
+/// From the left edge `x` on.
+void paint_upright(Painter&, const Frame&, double x, const std::string& title);
 void paint_frame_texts(Painter&, const Frame&, const std::string& title, const std::string& note,
                        const std::string& x_title, const std::string& y_title);
 

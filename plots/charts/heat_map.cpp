@@ -160,10 +160,10 @@ std::string to_svg(const HeatMap& map) {
   double widest_value = 0;
   for (const Tick& tick : bar.ticks)
     widest_value = std::max(widest_value, text_width(tick.label, kTickText));
-  frame.left += kAxisTitleRow + widest + 8;
-  frame.right -= kBarGap + kBarWidth + 6 + widest_value + kAxisTitleRow - kMargin;
   frame.bottom += kTickText.size_px + 10 + kAxisTitleRow;
   frame.top -= 4;
+  frame.left += upright_width(frame, map.y_label) + widest + 8;
+  frame.right -= kBarGap + kBarWidth + 6 + widest_value + upright_width(frame, map.value_label) - kMargin;
   check_frame(frame, map.title);
 
   const double cell_width = frame.width() / static_cast<double>(map.columns.size());
@@ -233,9 +233,7 @@ std::string to_svg(const HeatMap& map) {
       label.vertical = Align::centre;
       painter.text(bar_left + kBarWidth + 6, y, tick.label, label);
     }
-    TextStyle value_title = kAxisText;
-    value_title.upright = true;
-    painter.text(frame.page_width - kMargin, (frame.bottom + frame.top) / 2, map.value_label, value_title);
+    paint_upright(painter, frame, frame.page_width - kMargin - upright_width(frame, map.value_label), map.value_label);
   };
   return draw_svg(scene);
 }

@@ -162,6 +162,24 @@ TEST(Chart, MoreLegendNeedsMorePageNotLessPlot) {
   EXPECT_EQ(height(to_svg(chart)), chart.height_px + 4 * 18);
 }
 
+TEST(Chart, AnUprightTitleLongerThanThePlotIsHighTakesTwoLines) {
+  Chart chart = sample();
+  const auto times = [&](const std::string& words) {
+    const std::string text = parse(to_svg(chart)).text;
+    int count = 0;
+    for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+      ++count;
+    return count;
+  };
+  const int described = 1;  // for those who do not see it
+  chart.y.label = "mean error of the exit point";
+  EXPECT_EQ(times(chart.y.label), described + 1);
+  chart.y.label += " in diagonals of the object's box of bounds";
+  EXPECT_EQ(times(chart.y.label), described) << "it would run into the legend";
+  EXPECT_EQ(times("mean error of the exit"), described + 1);
+  EXPECT_EQ(times("box of bounds"), described + 1);
+}
+
 TEST(Chart, PicturesNeedTheConverter) {
   const test::TemporaryFolder folder;
   const std::string path = std::getenv("PATH");
