@@ -330,15 +330,10 @@ class RowsChart {
     if (wanted_.reference_error) add(reference_note());
   }
 
-  /// How exact the reference is: errors below that mean nothing.
+  /// Errors below those of the reference mean nothing.
   std::string reference_note() const {
-    double mean = 0, most = 0;
-    for (const json* row : rows_.kept) {
-      mean = std::max(mean, number(*row, "reference_step_error_mean").value_or(0));
-      most = std::max(most, number(*row, "reference_step_error_max").value_or(0));
-    }
-    if (most <= 0) return "";
-    return fmt::format("The reference's own step error: {:.1e} in the mean, {:.1e} at most.", mean, most);
+    const std::string exactness = sweeps::reference_exactness(rows_.kept);
+    return exactness.empty() ? "" : fmt::format("The reference's own {}.", exactness);
   }
 
   RowChart wanted_;

@@ -25,6 +25,7 @@
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/spec/point_json.hpp"
 #include "sweeps/spec/provenance.hpp"
+#include "sweeps/store/rows.hpp"
 
 namespace pellucid::sandbox {
 namespace {
@@ -255,8 +256,10 @@ class Drawing {
     make(products, command, options_, reference);
     truth_ = std::move(*products.front().file);
     const json error = attribute(truth_, "pellucid.reference_error");
-    out_.step_error_max = error.value("step_error_max", 0.0);
-    out_.step_error_mean = error.value("step_error_mean", 0.0);
+    json row;
+    for (const auto& [name, value] : error.items())
+      row["reference_" + name] = value;
+    out_.exactness = sweeps::reference_exactness({&row});
     out_.unconverged_share = error.value("unconverged_share", 0.0);
   }
 

@@ -36,7 +36,8 @@ struct DrawnPictures {
   int width = 0, height = 0;
   std::string surfaces;  ///< of the reference: rays, raster or forward
   DrawnPicture reference;
-  double step_error_max = 0, step_error_mean = 0, unconverged_share = 0;
+  std::string exactness;               ///< of the reference, as sweeps::reference_exactness() puts it
+  double unconverged_share = 0;        ///< of its pixels
   std::vector<DrawnPicture> pictures;  ///< in the order of the paper
   plots::Window close_up;              ///< empty where the set has none
   std::string close_up_of;             ///< label or name of the picture that placed it; empty: it was chosen by hand

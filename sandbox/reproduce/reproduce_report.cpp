@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -53,17 +52,6 @@ std::string distinct_sizes(const SweepOutcome& sweep) {
   return out;
 }
 
-std::optional<double> largest(const PaperOutcome& outcome, const char* field) {
-  std::optional<double> out;
-  for (const SweepOutcome& sweep : outcome.sweeps) {
-    for (const json& row : sweep.rows) {
-      if (const auto found = row.find(field); found != row.end() && found->is_number())
-        out = std::max(out.value_or(0), found->get<double>());
-    }
-  }
-  return out;
-}
-
 std::string clock_text(const std::string& clock) {
   if (clock == "finish") return "finish: the host waits for each frame, since the device's own clock cannot be trusted";
   if (clock == "gpu_query") return "gpu_query: timestamps of the GPU";
@@ -92,11 +80,13 @@ Facts run_facts(const PaperOutcome& outcome) {
   for (const auto& [part, seconds] : outcome.seconds)
     facts.pairs.back().second +=
         fmt::format("; {} {}", part, seconds < 1 ? "in less than a second" : "in " + sweeps::duration_text(seconds));
-  if (const auto error = largest(outcome, "reference_step_error_max")) {
-    add("Reference",
-        fmt::format("traced on the CPU; step error at most {:.1e} of radiance 1, {:.1e} in the mean of the worst frame",
-                    *error, largest(outcome, "reference_step_error_mean").value_or(0)));
+  sweeps::RowPointers rows;
+  for (const SweepOutcome& sweep : outcome.sweeps) {
+    for (const json& row : sweep.rows)
+      rows.push_back(&row);
   }
+  if (const std::string exactness = sweeps::reference_exactness(rows); !exactness.empty())
+    add("Reference", fmt::format("traced on the CPU; its {}, of the worst frame", exactness));
   return facts;
 }
 
@@ -154,8 +144,7 @@ ReportTable table_block(const PaperOutcome& outcome, const TableOutcome& made) {
 
 std::string caption(const DrawnPictures& set, const DrawnPicture& picture) {
   if (picture.technique.empty()) {
-    return fmt::format("traced on the CPU, step error at most {:.1e}, {:.1e} in the mean{}", set.step_error_max,
-                       set.step_error_mean,
+    return fmt::format("traced on the CPU; its {}{}", set.exactness,
                        set.unconverged_share > 0
                            ? fmt::format("; {:.2g} % of the pixels above the tolerance", 100 * set.unconverged_share)
                            : "");

@@ -120,6 +120,20 @@ std::optional<std::pair<double, double>> extent(const RowPointers& rows, std::st
   return result;
 }
 
+std::string reference_exactness(const RowPointers& rows) {
+  std::string all;
+  for (const char* kind : {"standard", "step"}) {
+    const auto most = extent(rows, fmt::format("reference_{}_error_max", kind));
+    const auto mean = extent(rows, fmt::format("reference_{}_error_mean", kind));
+    // The standard error is 0 with one ray a pixel; a reference without a medium takes no steps.
+    const bool none = most && most->second == 0 && (std::string_view(kind) == "standard" || !all.empty());
+    if (!most || !mean || none) continue;
+    all += fmt::format("{}{} error is at most {}, {} in the mean", all.empty() ? "" : "; its ", kind,
+                       significant(most->second, 2), significant(mean->second, 2));
+  }
+  return all;
+}
+
 std::vector<std::pair<std::string, std::string>> settings(const json& row) {
   std::vector<std::pair<std::string, std::string>> result;
   const std::string technique = field_text(row, "technique");

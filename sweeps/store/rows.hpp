@@ -52,6 +52,10 @@ std::set<std::string> distinct(const RowPointers&, std::string_view field);
 /// Smallest and largest of a field.
 std::optional<std::pair<double, double>> extent(const RowPointers&, std::string_view field);
 
+/// How exact the reference of these rows is, at worst: "step error is at most 0.00031, 1.2e-06 in the mean", the
+/// standard error of one whose rays are random, or both, joined by "; its ". Empty where the rows tell neither.
+std::string reference_exactness(const RowPointers&);
+
 /// The choices for a point, as against its measurements: technique, scene, view, size ("720×540") and every parameter.
 std::vector<std::pair<std::string, std::string>> settings(const nlohmann::json& row);
 

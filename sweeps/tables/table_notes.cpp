@@ -86,12 +86,8 @@ void add_provenance(const TableSpec& spec, const RowPointers& rows, const std::s
     notes.push_back(
         fmt::format("Intervals are 95 % bootstrap intervals of the median, of {} frames per point.", count));
   }
-  const auto worst = extent(rows, "reference_step_error_max");
-  const auto mean = extent(rows, "reference_step_error_mean");
-  if (worst && mean) {
-    notes.push_back(fmt::format("The reference's own step error is at most {}, {} in the mean.",
-                                significant(worst->second, 2), significant(mean->second, 2)));
-  }
+  if (const std::string exactness = reference_exactness(rows); !exactness.empty())
+    notes.push_back(fmt::format("The reference's own {}.", exactness));
   if (const auto drift = extent(rows, "baseline_drift")) {
     notes.push_back(
         fmt::format("The baseline's frame time changed by {:+.1f} % to {:+.1f} % in the course of the sweep.",

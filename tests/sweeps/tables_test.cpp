@@ -107,6 +107,20 @@ TEST(Tables, OursComeFromTheStoresRows) {
   EXPECT_FALSE(noted(table, "Not measured"));
 }
 
+TEST(Tables, ARandomReferenceTellsItsNoise) {
+  std::vector<json> rows = all_measured();
+  for (json& row : rows) {
+    row["reference_standard_error_max"] = 0.25;
+    row["reference_standard_error_mean"] = 0.0125;
+  }
+  EXPECT_TRUE(noted(make_table(kName, rows),
+                    "The reference's own standard error is at most 0.25, 0.013 in the mean; its step error is at most "
+                    "0.00031, 1.2e-06 in the mean."));
+  for (json& row : rows)
+    row["reference_step_error_max"] = 0.0;  // nothing is stepped through
+  EXPECT_TRUE(noted(make_table(kName, rows), "own standard error is at most 0.25, 0.013 in the mean."));
+}
+
 TEST(Tables, AFailedPointSaysSoAndWhy) {
   std::vector<json> rows = all_measured();
   rows[1] = {{"sweep", "sampling_hulls_table1"},
