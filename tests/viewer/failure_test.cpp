@@ -111,8 +111,8 @@ TEST_F(Failing, ARenderersWarningIsToldOnce) {
   window.wait_picture();
   // Another renderer warns again; the window has told it.
   ::kill(renderer_of(window), SIGSEGV);
-  window.wait_status(
-      {"the renderer", "Segmentation fault"});  // its end is known: a request before goes to the dying one
+  // F5 before the window knows of its end would ask the dying one.
+  window.wait_status({"the renderer", "Segmentation fault"});
   window.key("F5");
   window.wait_picture();
   const auto& all = window.events();
