@@ -121,17 +121,16 @@ std::optional<std::pair<double, double>> extent(const RowPointers& rows, std::st
 }
 
 std::string reference_exactness(const RowPointers& rows) {
-  std::string all;
-  for (const char* kind : {"standard", "step"}) {
+  const auto words = [&](const char* kind, bool zero_too) -> std::string {
     const auto most = extent(rows, fmt::format("reference_{}_error_max", kind));
     const auto mean = extent(rows, fmt::format("reference_{}_error_mean", kind));
-    // The standard error is 0 with one ray a pixel; a reference without a medium takes no steps.
-    const bool none = most && most->second == 0 && (std::string_view(kind) == "standard" || !all.empty());
-    if (!most || !mean || none) continue;
-    all += fmt::format("{}{} error is at most {}, {} in the mean", all.empty() ? "" : "; its ", kind,
-                       significant(most->second, 2), significant(mean->second, 2));
-  }
-  return all;
+    if (!most || !mean || (most->second == 0 && !zero_too)) return "";
+    return fmt::format("{} error is at most {}, {} in the mean", kind, significant(most->second, 2),
+                       significant(mean->second, 2));
+  };
+  // The standard error is 0 with one ray a pixel; a reference without a medium takes no steps.
+  const std::string noise = words("standard", false), steps = words("step", noise.empty());
+  return noise + (noise.empty() || steps.empty() ? "" : "; its ") + steps;
 }
 
 std::vector<std::pair<std::string, std::string>> settings(const json& row) {
