@@ -63,7 +63,7 @@ class DisplayUsers {
     if (const auto it = users_.find(display); it != users_.end() && --it->second == 0) {
       users_.erase(it);
       // LeakSanitizer can name, and so suppress, what a driver leaks only while the driver stays loaded.
-#if !defined(__SANITIZE_ADDRESS__)
+#ifndef PELLUCID_SANITIZE
       eglTerminate(display);
 #endif
     }

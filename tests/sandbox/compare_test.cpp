@@ -110,7 +110,7 @@ TEST(Compare, RefusesImagesCutShortAnywhere) {
 }
 
 // AddressSanitizer reserves terabytes of address space for itself.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PELLUCID_SANITIZE
 const std::string kLimit;
 #else
 const std::string kLimit = "ulimit -v 3000000; ";
