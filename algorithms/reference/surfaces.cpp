@@ -203,7 +203,8 @@ class SurfaceTracing {
                                              [](const Relief& relief) { return relief.scatters(); })),
         build_s_(seconds_since(start_)),
         caustics_(trace_caustics(scene, options, photons_s_)),
-        picture_(scene, camera, options, walking_) {
+        picture_(scene, camera, options, walking_),
+        kept_samples_(picture_.samples) {
     layer_.radiance = Image(camera.width, camera.height, 3);
     layer_.optical = Image(camera.width, camera.height, 1);
     layer_.distance_m.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
@@ -293,6 +294,7 @@ class SurfaceTracing {
   void summarise() {
     SurfaceStatistics& statistics = layer_.statistics;
     statistics.samples = options_.samples;
+    statistics.kept_samples = kept_samples_;
     statistics.build_s = build_s_;
     statistics.photons_s = photons_s_;
     statistics.trace_s = picture_.trace_s;
@@ -336,6 +338,7 @@ class SurfaceTracing {
   double photons_s_ = 0;
   const std::optional<PhotonMap> caustics_;
   PartialPicture picture_;  // it keeps the time from here on
+  const std::int64_t kept_samples_;
   SurfaceLayer layer_;
 };
 

@@ -102,7 +102,8 @@ ordered_json distance(const Image& exact, const Image& slices) {
 
 /// The cost of surfaces from rays, and their errors.
 ordered_json statistics_json(const SurfaceStatistics& s) {
-  return {{"standard_error_max", s.standard_error_max},
+  return {{"kept_samples", s.kept_samples},
+          {"standard_error_max", s.standard_error_max},
           {"standard_error_mean", s.standard_error_mean},
           {"caustic_standard_error_max", s.caustic_standard_error_max},
           {"caustic_standard_error_mean", s.caustic_standard_error_mean},
@@ -202,6 +203,8 @@ class ReferenceRun {
           "{:.2g}, mean {:.2g}",
           output, s.trace_s, s.rays, s.rays_per_s(), s.standard_error_max + s.caustic_standard_error_max,
           s.standard_error_mean + s.caustic_standard_error_mean, s.cut_weight_max, s.cut_weight_mean);
+      if (s.kept_samples > 0)
+        tell("{}: {} of {} samples a pixel come from an earlier run", output, s.kept_samples, s.samples);
     }
     if (of_slices_) {
       tell("{}: from the exact reference: FLIP {:.4g} in the mean, RMSE {:.4g}", output,
