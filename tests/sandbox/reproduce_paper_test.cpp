@@ -172,7 +172,8 @@ TEST_F(ReproducePaper, AFileOfOnesOwnFromItsSweepToItsPage) {
   }
   EXPECT_EQ(thumbnails, 2U);
 
-  for (const json& picture : reproduce().at("pictures"))
+  const json again = reproduce();
+  for (const json& picture : again.at("pictures"))
     EXPECT_TRUE(picture.at("kept").get<bool>());
 }
 
