@@ -6,14 +6,6 @@
 #include <numeric>
 
 namespace pellucid::sweeps {
-namespace {
-
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
-}  // namespace
 
 double quantile(std::span<const double> sorted, double q) {
   assert(!sorted.empty() && q >= 0 && q <= 1);
@@ -21,6 +13,11 @@ double quantile(std::span<const double> sorted, double q) {
   const auto below = static_cast<std::size_t>(at);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+double median_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return quantile(values, 0.5);
 }
 
 /// P(Binomial(n, p) ≥ m), summed outwards from the largest term's logarithm so that nothing underflows.

@@ -12,6 +12,9 @@ namespace pellucid::sweeps {
 /// Linear interpolation between order statistics (Hyndman and Fan 1996, type 7). `sorted` ascending, not empty.
 double quantile(std::span<const double> sorted, double q);
 
+/// In any order, not empty.
+double median_of(std::vector<double> values);
+
 struct Interval {
   double low = 0;
   double high = 0;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/technique.hpp"
+#include "sweeps/measure/stopping.hpp"
 #include "sweeps/metrics/metrics.hpp"
 #include "sweeps/quantities/quantities.hpp"
 #include "sweeps/store/rows.hpp"
@@ -66,11 +67,6 @@ std::vector<std::string> varying(const Rows& rows, const std::vector<std::string
     if (values.size() > 1) result.push_back(name);
   }
   return result;
-}
-
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
 }
 
 /// Standard deviation by the median absolute deviation, which a minority of changed points does not move.

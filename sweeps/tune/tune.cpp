@@ -14,6 +14,7 @@
 
 #include "algorithms/parameters.hpp"
 #include "gl/error.hpp"
+#include "sweeps/measure/stopping.hpp"
 #include "sweeps/tune/median_interval.hpp"
 
 namespace pellucid::sweeps {
@@ -140,10 +141,6 @@ std::vector<Finalist> rank_finalists(const std::vector<std::size_t>& points,
     for (const std::size_t i : timed)
       relative[i].push_back(std::log(round_ms[i][round]) - mean);
   }
-  const auto median_of = [](std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return quantile(values, 0.5);
-  };
   const std::size_t best = *std::min_element(timed.begin(), timed.end(), [&](std::size_t a, std::size_t b) {
     return median_of(relative[a]) < median_of(relative[b]);
   });

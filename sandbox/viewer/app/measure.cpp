@@ -22,6 +22,7 @@
 #include "gl/resources/resources.hpp"
 #include "sandbox/status.hpp"
 #include "sandbox/viewer/app/app.hpp"
+#include "sweeps/measure/stopping.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -40,12 +41,6 @@ constexpr double kFrameRatio = 1.05, kTyped_ms = 100, kSaved_ms = 200, kIdlePerc
 
 double now_ms() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Processor seconds of a process so far.
@@ -101,7 +96,7 @@ std::pair<double, double> App::measure_frames() {
     }
     alone.push_back(workspace_.picture(Side::a)->frame_ms);
   }
-  return {median(shown), median(alone)};
+  return {sweeps::median_of(shown), sweeps::median_of(alone)};
 }
 
 // From Enter to the finished drawing of the frame, through the same functions as a hand's keys.
@@ -186,11 +181,11 @@ int App::measure() {
   nlohmann::ordered_json figures{
       {"frame_ms_window", shown_ms}, {"frame_ms_headless", alone_ms}, {"frame_ratio", shown_ms / alone_ms}};
   if (!typed.empty()) {
-    figures["typed_ms_median"] = median(typed);
+    figures["typed_ms_median"] = sweeps::median_of(typed);
     figures["typed_ms_max"] = *std::max_element(typed.begin(), typed.end());
   }
   if (!saved.empty()) {
-    figures["saved_ms_median"] = median(saved);
+    figures["saved_ms_median"] = sweeps::median_of(saved);
     figures["saved_ms_max"] = *std::max_element(saved.begin(), saved.end());
   }
   figures["idle_percent"] = idle;
