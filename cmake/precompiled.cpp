@@ -1,4 +1,1 @@
-#include <nlohmann/json.hpp>
-
-template class nlohmann::basic_json<>;
-template class nlohmann::basic_json<nlohmann::ordered_map>;
+// A library needs a file; what precompiled.hpp declares is compiled in json.cpp.

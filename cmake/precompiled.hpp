@@ -30,6 +30,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
-// The library's code in precompiled.cpp alone, instead of in each of a hundred files.
+// The library's code in json.cpp alone, instead of in each of a hundred files.
 extern template class nlohmann::basic_json<>;
 extern template class nlohmann::basic_json<nlohmann::ordered_map>;

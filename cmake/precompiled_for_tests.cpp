@@ -1,1 +1,0 @@
-// A library needs a file; what precompiled.hpp declares is compiled in precompiled.cpp.
