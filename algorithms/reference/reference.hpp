@@ -49,7 +49,7 @@ struct SurfaceOptions {
 /// in the channel where it is largest: times the scene's largest radiance it bounds the error.
 struct SurfaceStatistics {
   int samples = 1;
-  std::int64_t kept_samples = 0;  ///< of these, taken up from an earlier run of the same picture (`PartialPicture`)
+  std::int64_t kept_samples = 0;   ///< of these, from an earlier run of the same picture (`PartialPicture`)
   double standard_error_max = 0;   ///< of a pixel's worst channel; an upper bound, since strata only lessen it. 0 at
   double standard_error_mean = 0;  ///< one sample, which is the truth at the pixel's centre
   double cut_weight_max = 0;       ///< of branches left out by `cut` and `depth`: of a pixel, and the mean of all
