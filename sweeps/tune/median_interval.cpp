@@ -25,9 +25,7 @@ double binomial_below(std::size_t n, std::size_t k) {
 double effective_samples(std::span<const double> in_order) {
   const double n = static_cast<double>(in_order.size());
   if (in_order.size() < 8) return n;
-  std::vector<double> sorted(in_order.begin(), in_order.end());
-  std::sort(sorted.begin(), sorted.end());
-  const double median = quantile(sorted, 0.5);
+  const double median = median_of({in_order.begin(), in_order.end()});
   const auto sign = [&](double x) { return x > median ? 1.0 : x < median ? -1.0 : 0.0; };
   double together = 0;
   double all = 0;
